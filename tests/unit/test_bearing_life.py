@@ -141,6 +141,30 @@ def test_factors_of_one_mesh_go_before_those_of_all(train):
         strength(train.updated({f'strength.meshes."{key[:-1]}".face_load_factor': 1.33}))
 
 
+def test_the_most_loaded_planet_loads_its_bearing_and_carries_all_at_most():
+    case = ep.load_case("talbot-2012")
+    (even,) = strength(case).bearings
+    stated = {"strength.mesh_load_factor": 1.27}
+    (uneven,) = strength(case.updated(stated)).bearings
+    assert 1.19 < uneven.load / even.load < 1.27  # the centrifugal force is that of all planets
+    one = stated | {"strength.meshes.ring_mesh.mesh_load_factor": 1.04}
+    (between,) = strength(case.updated(one)).bearings
+    assert even.load < between.load < uneven.load
+    for where in ("", "meshes.sun_mesh."):
+        key = f"strength.{where}mesh_load_factor"
+        with pytest.raises(ep.InputError, match="must be at most 3") as error:
+            strength(case.updated({key: 3.2}))
+        assert [it.key for it in error.value.problems] == [key]
+
+
+def test_what_a_run_says_of_its_loads_stands_beside_safeties():
+    keys = {"tip_relief": "320 um", "tip_relief_roll_length": "2.1 mm"}
+    changes = {f"sun.micro_geometry.{key}": value for key, value in keys.items()}
+    notes = strength(ep.load_case("talbot-2012").updated(changes)).notes
+    assert [it for it in notes if "of the contact lines of the sun mesh carry load" in it]
+    assert not [it for it in notes if "Not included" in it]
+
+
 def test_a_mesh_without_load_has_no_safety():
     idle = strength(ep.load_case("talbot-2012-pair"))
     assert idle.meshes == ()

@@ -143,6 +143,16 @@ def test_wrong_designations_are_one_problem(keys, part):
     assert problem.key == f"bearings.motor_rear.{part}"
 
 
+def test_a_size_that_is_not_that_of_the_designation_is_named():
+    case = ep.load_case("train-eaxle")
+    front = "bearings.motor_front"
+    assert case.updated({f"{front}.designation": "6207"}).bearings["motor_front"].bore == 35e-3
+    found = problems_of(case.updated, {f"{front}.designation": "6208"})
+    assert [(it.key, it.value) for it in found] == [
+        (f"{front}.bore", "35 mm"), (f"{front}.outside_diameter", "72 mm")]  # fmt: skip
+    assert ["40 mm for 6208" in found[0].allowed, "80 mm for 6208" in found[1].allowed] == [1, 1]
+
+
 # --- planets --------------------------------------------------------------------------------------
 
 TALBOT = "talbot-2012"

@@ -40,6 +40,20 @@ def pair(changes):
     return ep.load_case("talbot-2012-pair", {**RUNNING, **changes})
 
 
+@pytest.mark.parametrize(
+    ("changes", "idle"),
+    [
+        ({}, False),
+        ({"thermal.coolant_temperature": "37 degC"}, True),
+        ({"thermal.coolant_temperature": "37 degC", "thermal.cooler_conductance": "3 W/K"}, False),
+        ({"thermal.coolant_temperature": "37 degC", "models.temperatures": "inlet"}, False),
+    ],
+)
+def test_a_coolant_without_a_cooler_has_no_effect_and_is_told(changes, idle):
+    notes = solve(pair({**EVERYTHING, **changes})).notes
+    assert any("coolant_temperature has no effect" in note for note in notes) == idle
+
+
 def test_heat_of_sliding_is_shared_where_it_arises():
     """Weights are the heat at each point, not the friction: they give another share."""
     case = pair({})

@@ -617,6 +617,29 @@ def test_pair_in_a_case_induces_thrust_and_states_its_arrangement(pair_case):
     assert other.total != result.total
 
 
+@pytest.mark.parametrize(
+    ("keys", "part"),
+    [
+        ({"motor_front.locating": False}, "no bearing is locating on motor"),
+        ({"motor_rear.locating": True}, "both bearings are locating on motor"),
+        (
+            {
+                "motor_rear.locating": True,
+                "motor_rear.axial_sense": "negative",
+                "motor_front.axial_sense": "positive",
+            },
+            "",
+        ),
+        ({}, ""),
+    ],
+)
+def test_who_takes_the_axial_force_is_told_where_nobody_states_it(keys, part):
+    case = ep.load_case("train-eaxle").updated({f"bearings.{k}": it for k, it in keys.items()})
+    found = [note for note in ep.solve(case).warnings if "locating on" in note]
+    assert len(found) == bool(part)
+    assert not part or found[0].startswith(f"motor_front: {part}; the first is taken")
+
+
 def test_arrangements_mirrored_give_mirrored_results(pair_case):
     """In a mirror across the shafts all positions and hands turn round, and X stays X."""
     for arrangement in ("X", "O"):

@@ -186,6 +186,11 @@ def test_dynamic_and_transverse_factor_are_as_printed():
     assert base_pitch.dynamic_factor(36e3, 0.70) < base_pitch.dynamic_factor(36e3, 0.72)
     assert base_pitch.dynamic_factor(36e3, 0.72) == base_pitch.dynamic_factor(36e3, 1.1)
     assert moved.transverse_factor(load * 1.092 * 1.15) == pytest.approx(1.069, rel=2e-3)
+    # all load on one pair of teeth: each factor has its own bound
+    assert moved.transverse_shares(7e3, 0.83) == pytest.approx(
+        (2.884 / (1.463 * 0.83**2), 2.884 / (0.75 + 0.25 * 1.463))
+    )
+    assert moved.transverse_shares(load, 0.83) == (moved.transverse_factor(load),) * 2
 
 
 def oil():

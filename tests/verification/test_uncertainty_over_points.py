@@ -343,7 +343,11 @@ def test_curves_of_too_few_samples_explain_nothing():
     samples = make_samples(values, 16, 3)
     mask = np.array([True])
     drawn = np.concatenate([samples.a, samples.b], axis=1)
-    assert np.isnan(fit_curves(mask, samples, drawn.sum(axis=0)[None]).explained)
+    losses = np.array([100 + drawn.sum(axis=0)])
+    losses[0, 1::3] = np.nan  # as of samples without a solution
+    few = fit_curves(mask, samples, losses)
+    assert np.isnan(few.explained)
+    np.testing.assert_allclose(few.at(drawn)[-1], np.nanmean(losses))
 
 
 @pytest.mark.slow

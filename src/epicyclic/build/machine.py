@@ -372,16 +372,24 @@ def _support(tables: Tables, name: str) -> Support:
     return Support(place + outer, sense, bearing.thrust_ratio, preload)
 
 
-def _assumed_pairs(case: TrainCase) -> set[str]:
-    """Bearings of pairs whose arrangement nobody states."""
-    return {
-        name
-        for tables in borne_shafts(case).values()
-        if len(tables) == 2
-        and all(one.is_angular and one.axial_sense == "both" for one in tables.values())
-        and not any(one.arrangement for one in tables.values())
-        for name in tables
-    }
+def _assumptions(case: TrainCase) -> dict[str, str]:
+    """What is assumed of bearings where nobody states which of two takes an axial force."""
+    found: dict[str, str] = {}
+    for shaft, tables in borne_shafts(case).items():
+        angular = [one for one in tables.values() if one.is_angular]
+        senses = [one.axial_sense for one in tables.values() if one.locating]
+        assumed = ""
+        if len(angular) == 2 and not any(
+            one.arrangement or one.axial_sense != "both" for one in angular
+        ):
+            assumed = "the bearing arrangement is not given; X is assumed, as is usual for gear "
+            assumed += 'shafts. Write arrangement = "X" or "O".'
+        elif len(tables) == 2 and not angular and senses[1:] == senses[:1]:
+            who = "both bearings are" if senses else "no bearing is"
+            assumed = f"{who} locating on {shaft}; the first is taken to carry all the axial "
+            assumed += "force. Write locating = true for one of them."
+        found |= dict.fromkeys(tables, assumed)
+    return found
 
 
 def _seats(case: TrainCase, shaft: str, sets: Mapping[str, GearSet]) -> Iterator[GearSeat]:
@@ -493,14 +501,14 @@ def _distances(case: TrainCase) -> dict[str, int]:
 
 def _parts(case: TrainCase | PlanetaryCase, shafts: Mapping[str, str]) -> Iterator[Element]:
     """Bearings, seals and other drags."""
-    assumed = _assumed_pairs(case) if isinstance(case, TrainCase) else set()
+    assumed = _assumptions(case) if isinstance(case, TrainCase) else {}
     for kind, name, table in case.elements:
         assert case.lubricant is not None
         element = build_element(
             kind, name, table, shafts=shafts, oil=case.lubricant.oil, folder=case.folder
         )
-        if name in assumed and isinstance(element, ShaftBearing):
-            element = replace(element, arrangement_assumed=True)
+        if assumed.get(name) and isinstance(element, ShaftBearing):
+            element = replace(element, assumed=assumed[name])
         yield element
 
 

@@ -536,7 +536,10 @@ def _set_notes(built: Built, solution: Solution) -> Iterator[str]:
 
 def _solution_notes(case: Case, settled: Settled) -> Iterator[str]:
     """Limits without the value, self-locking, parallel ways, floating teeth, scattering heat."""
-    solution = settled.solution
+    solution, thermal = settled.solution, case.thermal
+    stated = settled.answer.links and "coolant_temperature" in thermal.model_fields_set
+    if stated and thermal.cooler_conductance == 0:
+        yield Note("thermal.coolant_temperature has no effect without cooler_conductance.")
     for value in stated_values(case)[0].values() if getattr(case, "uncertainty", {}) else ():
         if value is not None and value.remark:
             yield f'uncertainty."{value.key}": {value.remark}. Correct the limits or the value.'

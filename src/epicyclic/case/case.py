@@ -101,13 +101,8 @@ from epicyclic.units import unit_text
 
 # What all kinds of cases share: how they are made from tables, changed and compared.
 
-
 FILE_KEYS = ("oil_model", "pocketing_table", "file")  # Keys that name files, wherever they stand.
-_DECIDED = (
-    ("surroundings", "oil_air_ratio"),
-    ("thermal", "lubrication"),
-    ("thermal", "bath_share"),
-)
+_DECIDED = ("surroundings", "oil_air_ratio"), ("thermal", "lubrication"), ("thermal", "bath_share")
 """Keys in place of whose defaults a value follows from [lubrication]."""
 _BESIDE_GEARS = {
     *("kind", "title", "operation", "lubrication", "surroundings", "thermal", "models", "numerics"),
@@ -115,8 +110,6 @@ _BESIDE_GEARS = {
     *("planet_bearing", "planet_pin", "load_sharing"),
 }
 """Tables on which gears do not depend."""
-
-
 _MAGNITUDES = {"torque", "speed", "oil_inlet_temperature"}
 """Of [operation]: whatever they are, the case moves or stands as it was checked to."""
 

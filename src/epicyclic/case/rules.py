@@ -553,7 +553,7 @@ def _of_gears(train: TrainCase, shaft: str, own: dict[str, ShaftBearingTable]) -
     """The forces of gears, and where they act."""
     names = ", ".join(own)
     if len(own) == 1 and any(True for _ in _gears(train, shaft)):
-        allowed = f"is the only bearing of {shaft}, so the gear forces would tilt the shaft."
+        allowed = f"is the only bearing of {shaft} without a given force, so gears would tilt it."
         yield Problem(f"bearings.{names}", "", allowed, f"Add a second bearing. {GIVE_FORCE}")
     for gear in _gears(train, shaft):
         if train.position_of(gear) is None:

@@ -87,7 +87,7 @@ def iso_mean_friction(
     radius: float,  # Equivalent radius of curvature at the pitch point, normal section. [m]
     viscosity: float,  # Viscosity of the oil at its inlet temperature, dynamic. [Pa s]
     roughness_factor: float,  # X_R, from `roughness_factor`. [1]
-    # X_L: mineral oil 1.0, PAO and ester 0.8, polyglycol 0.7, phosphate ester 0.75. [1]
+    # X_L: mineral oil 1.0, PAO and ester 0.8, polyglycol 0.7. [1]
     lubricant_factor: float,
 ) -> float:
     """Mean coefficient of friction of ISO/TS 6336-22, second hand. Theory (W5). [1]

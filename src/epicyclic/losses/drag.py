@@ -36,14 +36,10 @@ THICKEST = Range(
 _FACES_SOURCE = "one-seventh power law of the flat plate, Schlichting, Boundary-Layer Theory"
 _FACES = Range("reynolds_number", "Reynolds number of the faces", None, 1e7, NUMBER, _FACES_SOURCE)
 _CREEPING = Range(
-    "reynolds_number",
-    "Reynolds number of the faces",
-    70.0,
-    None,
-    NUMBER,
+    "reynolds_number", "Reynolds number of the faces", 70.0, None, NUMBER,
     "below it, the drag of a disc in creeping flow, 32/3 mu omega r^3, is larger: Lamb, "
     "Hydrodynamics",
-)
+)  # fmt: skip
 _RIM_SOURCE = "laminar flow around a cylinder, Theodorsen and Regier, NACA Report 793 (1944)"
 _RIM = Range(
     "reynolds_number", "Reynolds number of the rim", None, RIM_TRANSITION, NUMBER, _RIM_SOURCE

@@ -93,13 +93,9 @@ VISCOSITY_RANGE = Range(
 )
 """Viscosities of the simulations: the fluid is that of `atf-talbot-2012`, Tables 3.1 and 5.1."""
 PRESSURE_VISCOSITY_RANGE = Range(
-    "pressure_viscosity",
-    "pressure-viscosity coefficient",
-    10.6,
-    16.5,
-    PER_GIGAPASCAL,
+    "pressure_viscosity", "pressure-viscosity coefficient", 10.6, 16.5, PER_GIGAPASCAL,
     f"{_FLUID_SOURCE}, calibrated",
-)
+)  # fmt: skip
 """As calibrated for that fluid. The regressions contain exp(G) and are the most sensitive to it."""
 _ROUGHNESS = Range("roughness", "rms roughness", 0.1, 0.7, MICROMETRE, _SOURCE)
 
@@ -338,14 +334,9 @@ _LOAD = Range(
     "specific_load", "load per face width", 150.0, None, NEWTON_PER_MM, _NIEMANN, specific_load
 )
 _FORMULA_PRESSURE = Range(
-    "pitch_point_pressure",
-    "Hertz pressure at the pitch point",
-    None,
-    2.5,
-    GIGAPASCAL,
-    OF_THIS_PACKAGE,
-    pitch_point_pressure,
-)
+    "pitch_point_pressure", "Hertz pressure at the pitch point", None, 2.5, GIGAPASCAL,
+    OF_THIS_PACKAGE, pitch_point_pressure,
+)  # fmt: skip
 _FORMULA_ROUGHNESS = Range(
     "mean_ra", "mean roughness Ra", None, 5.0, MICROMETRE, OF_THIS_PACKAGE, mean_roughness_ra
 )
@@ -386,14 +377,9 @@ def schlenk(contact: MeshContact, settings: FrictionSettings) -> FloatArray:
 
 
 _RELATIVE_ROUGHNESS = Range(
-    "relative_roughness",
-    "Ra over reference diameter, um/mm",
-    None,
-    0.1,
-    NUMBER,
-    OF_THIS_PACKAGE,
+    "relative_roughness", "Ra over reference diameter, um/mm", None, 0.1, NUMBER, OF_THIS_PACKAGE,
     _relative_roughness,
-)
+)  # fmt: skip
 
 
 def niemann_winter(contact: MeshContact, settings: FrictionSettings) -> FloatArray:

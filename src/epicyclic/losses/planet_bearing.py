@@ -86,13 +86,9 @@ _PRESSURE = Range("hertz_pressure", "Hertz pressure", 0.25, 3.0, GIGAPASCAL, _SO
 _RACE = Range("roughness1", "rms roughness of the races", 0.02, 0.10, MICROMETRE, _SOURCE)
 _ROLLER = Range("roughness2", "rms roughness of the rollers", 0.055, 0.165, MICROMETRE, _SOURCE)
 _COMPOSITE = Range(
-    "composite_roughness",
-    "composite rms roughness",
-    math.hypot(0.02, 0.055),
-    math.hypot(0.10, 0.165),
-    MICROMETRE,
-    _SOURCE,
-)
+    "composite_roughness", "composite rms roughness", math.hypot(0.02, 0.055),
+    math.hypot(0.10, 0.165), MICROMETRE, _SOURCE,
+)  # fmt: skip
 _RADIUS = Range("radius", "equivalent radius", 0.5, 4.0, MILLIMETRE, _SOURCE)
 _SPEED = Range("rolling_speed", "rolling speed", 1.0, 20.0, METRE_PER_SECOND, _SOURCE)
 NEEDLE_RANGES = (

@@ -102,21 +102,13 @@ TAPERED_ERRORS = {"zhou-hoeprich": 0.14, "palmgren": 0.85, "harris": 0.85, "skf-
 """Largest mean error of a model on a set of tapered bearings of `validate --measured`. [1]"""
 
 _STATIC_RATIO = Range(
-    "static_ratio",
-    "equivalent static load over static load rating",
-    None,
-    1.0,
-    NUMBER,
+    "static_ratio", "equivalent static load over static load rating", None, 1.0, NUMBER,
     "static load rating of rolling bearings, ISO 76",
-)
+)  # fmt: skip
 AXIAL_RATIO = Range(
-    "axial_ratio",
-    "axial over radial force of a cylindrical roller bearing",
-    None,
-    0.4,
-    NUMBER,
+    "axial_ratio", "axial over radial force of a cylindrical roller bearing", None, 0.4, NUMBER,
     "flange friction, Harris (1991), second hand",
-)
+)  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)

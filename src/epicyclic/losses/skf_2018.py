@@ -43,13 +43,9 @@ SKF_AXIAL_RATIO = replace(
 )
 
 _SUPPLY = Range(
-    "supply",
-    "starvation factor of rolling",
-    LEAST_SUPPLY,
-    None,
-    NUMBER,
+    "supply", "starvation factor of rolling", LEAST_SUPPLY, None, NUMBER,
     "below, it falls with viscosity",
-)
+)  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)

@@ -75,22 +75,14 @@ LEAST_REYNOLDS = 1e-6  # Held there, deep in creeping flow, whose law is exact a
 FREE_FLANGE = 0.5  # Distance of a flange over the radius from which it has no effect (Diab). [1]
 BLUNT = 1.2  # Drag coefficient of a long cylinder across the flow (Hoerner), general knowledge. [1]
 DISCS = Range(
-    "reynolds_number",
-    "Reynolds number of the faces",
-    None,
-    7e6,
-    NUMBER,
+    "reynolds_number", "Reynolds number of the faces", None, 7e6, NUMBER,
     "tests with discs, Theodorsen and Regier, NACA Report 793 (1944)",
-)
+)  # fmt: skip
 JETS_IN_AIR = Range(
-    "oil_share",
-    "share of oil around the gears",
-    0.014,
-    0.057,
-    NUMBER,
+    "oil_share", "share of oil around the gears", 0.014, 0.057, NUMBER,
     "one part of oil in 34.25 of air, half to twice that: Anderson and Loewenthal, NASA TP-1622 "
     "(1980), second hand; the limits are of this package",
-)
+)  # fmt: skip
 
 
 def rim_coefficient(

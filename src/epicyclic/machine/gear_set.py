@@ -521,10 +521,14 @@ class GearSet:
             losses |= self._of_mesh(duty, mesh.losses)
             flags = mesh.flags + flags
         parts: list[ElementResult] = [*bearings.values(), *meshes.values()]
+        figures, extremes = (
+            Figures({key: partial(it.__getitem__, key) for it in found for key in it})
+            for found in zip(*((it.figures, it.extremes) for it in parts), strict=True)
+        )
         return _Branch(
             losses=losses,
-            figures=_all_of(it.figures for it in parts),
-            extremes=_all_of(it.extremes for it in parts),
+            figures=figures,
+            extremes=extremes,
             flags=flags,
             notes=Sought(*notes, *(mesh.notes.__iter__ for mesh in meshes.values())),
             meshes=meshes,
@@ -571,11 +575,6 @@ def _mean_heat(losses: Sequence[Loss]) -> tuple[tuple[str, float], ...]:
         for node, share in loss.heat:
             shares[node] += share * loss.watts / total
     return tuple(shares.items())
-
-
-def _all_of(found: Iterable[Mapping[str, Any]]) -> Figures[Any]:
-    """What is found of several parts."""
-    return Figures({key: partial(it.__getitem__, key) for it in found for key in it})
 
 
 def _widest(branches: Sequence[SomeFlags]) -> tuple[ValidityFlag, ...]:

@@ -424,8 +424,8 @@ class Housing:
     air_speed: float  # [m/s]
     emissivity: float  # [1]
     fin_factor: float  # [1]
-    inner_coefficient: float  # From the oil to the wall; from the oil to the air.
-    coefficient: float  # From the oil to the wall; from the oil to the air.
+    inner_coefficient: float  # From the oil to the wall. [W/(m^2 K)]
+    coefficient: float  # From the oil to the air. [W/(m^2 K)]
     foundation: float  # [W/K]
 
     def outside(self, wall: float, air: float) -> float:
@@ -484,8 +484,8 @@ class HeatSettings:
 
     pointwise = True
 
-    inlet: float  # Temperatures of the oil; the outlet where it was measured. [K]
-    outlet: float | None  # Temperatures of the oil; the outlet where it was measured. [K]
+    inlet: float  # Temperature of the oil. [K]
+    outlet: float | None  # Where it was measured. [K]
     flow: float  # Flow of oil. [m^3/s]
     wet: Wet  # How oil gets to what is in no set.
     wet_sets: Mapping[str, Wet]  # How it gets to each set.

@@ -27,11 +27,11 @@ class Link:
     pointwise = True
 
     key: str  # ``"sun-oil"``.
-    hot: str  # Nodes whose temperatures drive the heat.
-    cold: str  # Nodes whose temperatures drive the heat.
+    hot: str  # Node from which the heat comes where it is the warmer one.
+    cold: str  # The other node whose temperature drives the heat.
     conductance: float  # Heat over the difference of the two temperatures. [W/K]
-    method: str = ""  # How the conductance is found, and where that is printed.
-    source: str = ""  # How the conductance is found, and where that is printed.
+    method: str = ""  # How the conductance is found.
+    source: str = ""  # Where that is printed.
     into: str = ""  # Node that the heat goes to; empty for `cold`.
 
     @property
@@ -165,8 +165,8 @@ class Course:
 
     times: FloatArray  # [s]
     temperatures: FloatArray  # [K]
-    gained: FloatArray  # Energy that arose, and that left for nodes of given temperature. [J]
-    given_off: FloatArray  # Energy that arose, and that left for nodes of given temperature. [J]
+    gained: FloatArray  # Energy that arose. [J]
+    given_off: FloatArray  # Energy that left for nodes of given temperature. [J]
 
 
 class _PathMatrices(NamedTuple):

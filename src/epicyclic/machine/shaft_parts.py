@@ -301,7 +301,7 @@ class ShaftBearing(ShaftPart):
     # Reference speed of a cylindrical roller bearing, for its minimum load. [rad/s]
     reference_speed: float | None = None
     limiting_speed: float | None = None  # None for that of the type. [rad/s]
-    arrangement_assumed: bool = False  # True if nobody states how it is set against the other one.
+    assumed: str = ""  # Of its axial force, where nobody states which bearing takes it.
 
     figure_types: ClassVar = (("bearing", ShaftBearingFigures),)
 
@@ -380,12 +380,8 @@ class ShaftBearing(ShaftPart):
         if abs(speed) > limit:
             told = limit_text(speed, limit, self.limiting_speed is not None)
             yield Note(f"{self.key}: {told}", watts)
-        if self.arrangement_assumed and load.axial > 0:
-            text = (
-                f"{self.key}: the bearing arrangement is not given; X is assumed, as is usual for "
-                'gear shafts. Write arrangement = "X" or "O".'
-            )
-            yield Note(text, watts)
+        if self.assumed and load.axial > 0:
+            yield Note(f"{self.key}: {self.assumed}", watts)
         if self.bearing.estimated:
             own = self.bearing
             text = (

@@ -163,7 +163,7 @@ def solve(case: CaseSource, *, flow_tables: FlowTables | None = None) -> Result:
 
     Parameters
     ----------
-    case : PlanetaryCase, GearPairCase, str, Path or mapping
+    case : PlanetaryCase, GearPairCase, TrainCase, str, Path or mapping
         From `load_case`, or what that reads: a file, the name of a built-in case, tables.
     flow_tables : mapping, optional
         Tables of flows through pockets, as `sweep` makes them for its points; flows that they do
@@ -194,7 +194,7 @@ def solve_for(
 
     Parameters
     ----------
-    case : PlanetaryCase or GearPairCase
+    case : PlanetaryCase, GearPairCase or TrainCase
     quantity : str
         ``"cooler_power"``: heat that a cooler takes from the oil; ``"oil_flow"``: oil that leaves
         and comes back at the inlet temperature; ``"input_power"``: torque at the given speed.

@@ -44,7 +44,7 @@ def heat_balance(case: CaseSource) -> HeatBalance:
 
     Parameters
     ----------
-    case : PlanetaryCase or GearPairCase
+    case : PlanetaryCase, GearPairCase or TrainCase
         The network of all parts is solved, whatever its ``models.temperatures`` is.
 
     Raises

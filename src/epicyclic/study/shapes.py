@@ -213,9 +213,6 @@ def _set_shapes(found: SetPlaces, duties: tuple[MeshDuty, ...]) -> dict[str, xr.
     }
 
 
-# --- datasets -------------------------------------------------------------------------------------
-
-
 def _shape(gear: Gear, tool: Tool, table: StatedGear, places: list[Place]) -> xr.Dataset:
     import xarray as xr
 

@@ -341,7 +341,7 @@ def _branches(figure: str, data: xr.Dataset) -> Family:
 
     Fig. 2.9: over its torque, without lines.
     """
-    number = {"2.9": 2}.get(figure, int(figure.partition(".")[2]) - 7)
+    number = int(figure.partition(".")[2]) - 7
     temperature = _TEMPERATURE.values[number % 3]
     own = data.sel(
         temperature=temperature,

@@ -272,6 +272,7 @@ class BearingSealTable(Table):
 
 _OF_TAPERED = ("rollers", "roller_diameter", "roller_length", "rib_height", "rib_roughness")
 _OF_OTHERS = {"cylindrical": 3, "thrust-roller": 3, "deep-groove": 2, "thrust-ball": 2}  # of these
+_ROUNDED = 0.01  # Of a size that the designation states too. [1]
 _THINNEST, _THICKEST = 1.03, 6.0  # D over d: thin sections have 1.04, a 633 4.3 (catalogues). [1]
 
 
@@ -394,10 +395,15 @@ class ShaftBearingTable(ElementTable):
         from epicyclic.losses.shaft_bearing import TYPE_CONSTANTS, bearing_types
 
         kind, model = self.type, self.model
-        if self.designation and (own := designated_or_any(self.designation).type) != kind:
-            reason = f"is that of a {own} bearing, and type is {kind}."
+        if self.designation and (own := designated_or_any(self.designation)).type != kind:
+            reason = f"is that of a {own.type} bearing, and type is {kind}."
             yield Problem("designation", written(self.designation), reason, "Delete one of them.")
             return
+        for key in ("bore", "outside_diameter") if self.designation else ():
+            size, planned = getattr(self, key), getattr(own, key)
+            if abs(size - planned) > _ROUNDED * planned:
+                reason = f"is {millimetres(planned)} for {self.designation}."
+                yield Problem(key, millimetres(size), reason, "Delete one of them.")
         if self.bore >= self.outside_diameter:
             reason = f"must be less than outside_diameter, {millimetres(self.outside_diameter)}."
             yield Problem("bore", millimetres(self.bore), reason, "Correct one of the two.")

@@ -51,7 +51,9 @@ class MeshStrength(Table):
     face_load_factor: Factor | None = option(
         "K_Hbeta. Default: from the computed load along the contact lines."
     )
-    transverse_load_factor: Factor | None = option("K_Halpha. Default: after ISO 6336-1.")
+    transverse_load_factor: Factor | None = option(
+        "K_Halpha and K_Falpha. Default: after ISO 6336-1."
+    )
 
 
 class StrengthTable(MeshStrength):

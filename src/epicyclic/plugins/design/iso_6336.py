@@ -200,10 +200,12 @@ class Excitation:
     form_deviation: float  # f_f_alpha less running-in. [m]
     tip_relief: float  # C_a, of either gear the smaller one. [m]
 
-    def transverse_share(self, load: float, contact_ratio_factor: float) -> float:
-        """K_Halpha, at most that of all load on one pair of teeth. ISO 6336-1. [1]"""
-        most = self.total_contact_ratio / (self.contact_ratio * contact_ratio_factor**2)
-        return max(1.0, min(self.transverse_factor(load), most))
+    def transverse_shares(self, load: float, contact_ratio_factor: float) -> tuple[float, float]:
+        """K_Halpha and K_Falpha, at most those of all load on one pair of teeth. ISO 6336-1. [1]"""
+        ratio, found = self.contact_ratio, self.transverse_factor(load)
+        bounds = ratio * contact_ratio_factor**2, 0.25 * ratio + 0.75
+        of_flank, of_root = (max(1.0, min(found, self.total_contact_ratio / it)) for it in bounds)
+        return of_flank, of_root
 
     def transverse_factor(self, load: float) -> float:
         """K_Halpha at F_tH over the face width [N/m], at least 1. ISO 6336-1, Eq. 73, 74. [1]"""

@@ -11,6 +11,7 @@ import numpy as np
 from epicyclic import library
 from epicyclic.arrays import FloatArray
 from epicyclic.build.machine import Built
+from epicyclic.build.result import NOT_INCLUDED, assemble
 from epicyclic.case.case import Case
 from epicyclic.case.tables.strength import GearStrength, StrengthTable
 from epicyclic.contact.elastic_teeth import LoadedMesh
@@ -30,7 +31,7 @@ from epicyclic.losses.contact import LineLoads, MeshContact
 from epicyclic.losses.designations import RATING_BAND
 from epicyclic.losses.mesh import flash_temperatures
 from epicyclic.losses.shaft_bearing import CatalogueBearing
-from epicyclic.machine.element import State, joined_key
+from epicyclic.machine.element import State, joined_key, note_watts
 from epicyclic.machine.gear_mesh import MeshDuty, contact_under, distribute_load, elastic_loads
 from epicyclic.machine.gear_set import GearSet
 from epicyclic.machine.planets import PlanetBearing, rated
@@ -107,6 +108,7 @@ class LoadFactors:
     face: float  # K_Hbeta, as stated or computed.
     face_computed: float  # K_Hbeta of the computed load along the contact lines.
     transverse: float  # K_Halpha.
+    transverse_bending: float  # K_Falpha.
     face_bending: float  # K_Fbeta.
 
     @property
@@ -122,7 +124,7 @@ class LoadFactors:
     @property
     def bending(self) -> float:
         """All that load the roots."""
-        return self.common * self.face_bending * self.transverse
+        return self.common * self.face_bending * self.transverse_bending
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -237,8 +239,9 @@ def strength(case: CaseSource) -> Strength:
     """
     case = as_case(case)
     built, table = build_computed(case), case.strength or StrengthTable()
-    raise_any(_problems(case, table, built), case.source)
-    state = built.loaded_state()
+    raise_any(dict.fromkeys(_problems(case, table, built)), case.source)
+    settled = built.solve()
+    state = settled.solution.state
     assert case.lubricant is not None
     oil = case.lubricant.oil
     scuffing, micropitting, source = load_stages(table, oil)
@@ -254,7 +257,12 @@ def strength(case: CaseSource) -> Strength:
         bearings += rating.planet_bearings(name, own)
     shafts = [one for one in built.machine.elements if isinstance(one, ShaftBearing)]
     bearings += rating.shaft_bearings(shafts)
-    notes = list(_about_ratings(shafts))
+    notes = [
+        it
+        for it in assemble(case, built, settled).notes
+        if math.isinf(note_watts(it)) and not it.startswith(NOT_INCLUDED)
+    ]
+    notes += _about_ratings(shafts)
     if not meshes:
         notes.insert(0, "no mesh carries a load here, so none has a safety")
     return Strength(tuple(meshes), tuple(bearings), (scuffing, micropitting), source, tuple(notes))
@@ -276,10 +284,19 @@ def _about_ratings(shafts: Sequence[ShaftBearing]) -> Iterator[str]:
 
 def _problems(case: Case, table: StrengthTable, built: Built) -> Iterator[Problem]:
     """What the case does not have, and hardnesses that no steel of the class has."""
-    meshes = [joined_key(name, mesh.key) for name, own in built.sets.items() for mesh in own.meshes]
-    for name in table.meshes.keys() - set(meshes):
+    meshes = {
+        joined_key(name, it.key): own for name, own in built.sets.items() for it in own.meshes
+    }
+    for name in table.meshes.keys() - meshes.keys():
         remedy = did_you_mean(name, meshes) or f"Name one of {', '.join(meshes)}."
         yield Problem(f"strength.meshes.{name}", "", "is no mesh of the case.", remedy)
+    for mesh, of in meshes.items():
+        apart = getattr(table.meshes.get(mesh), "mesh_load_factor", None)
+        factor = apart or table.mesh_load_factor or 0.0
+        if of.planets and factor > of.count:
+            key = f"strength.{f'meshes.{mesh}.' if apart else ''}mesh_load_factor"
+            allowed = f"must be at most {of.count}, with which one of the planets carries all load."
+            yield Problem(key, f"{factor:g}", allowed, "Use a smaller factor.")
     known = [
         joined_key(name, gear) for name, gearing in case.gearings.items() for gear in gearing.tables
     ]
@@ -403,14 +420,20 @@ class _Rating:
         computed = face_load_factor(loads, mesh)
         face = self._stated(key, "face_load_factor") or computed
         depth = max(abs(it.tip_radius - it.root_radius) for it in mesh.gears)
+        stated = self._stated(key, "transverse_load_factor")
+        pressed, bent = (
+            (stated, stated)
+            if stated
+            else moved.transverse_shares(load * dynamic * face, iso.contact_ratio_factor(mesh))
+        )
         return LoadFactors(
             application=table.application_factor,
             sharing=sharing,
             dynamic=dynamic,
             face=face,
             face_computed=computed,
-            transverse=self._stated(key, "transverse_load_factor")
-            or moved.transverse_share(load * dynamic * face, iso.contact_ratio_factor(mesh)),
+            transverse=pressed,
+            transverse_bending=bent,
             face_bending=iso.face_factor_bending(face, width, depth),
         )
 
@@ -550,16 +573,19 @@ class _Rating:
         )
 
     def planet_bearings(self, name: str, own: GearSet) -> Iterator[BearingRating]:
-        """The roller bearings of the planets of a set."""
+        """The roller bearings of the planets of a set, under the K_gamma of its meshes."""
         state = self.state
         carrier = state.speeds[own.carrier]
         duties = {duty.gears.key: duty for duty in own.loaded_duties(state)}
+        for key, torque in ((duty.gears.key, duty.torque1) for duty in own.mean_duties(state)):
+            if stated := self._stated(joined_key(name, key), "mesh_load_factor"):
+                duties[key] = replace(duties[key], torque1=stated * torque)
         for planet in own.planets:
             bearing = planet.bearing
             if isinstance(bearing, PlanetBearing):
                 load = replace(planet, tilts=False).load(duties, carrier)[1].force
                 speed = state.speeds[planet.body] - carrier
-                known = rated(bearing.bearing, bearing.aligns_itself)
+                known = rated(bearing.bearing, bearing.aligns_itself, bearing.cage)
                 yield from self._bearing(joined_key(name, planet.key), known, load, speed)
 
     def shaft_bearings(self, shafts: Iterable[ShaftBearing]) -> Iterator[BearingRating]:

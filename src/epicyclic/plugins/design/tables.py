@@ -70,13 +70,23 @@ def _flanks(found: Strength) -> Table:
 
 
 def _factors(meshes: Sequence[MeshRating]) -> Table:
-    head = ("mesh", "F_t, N", "K_A", "K_gamma", "K_v", "K_Hbeta", "computed", "K_Halpha")
+    head = (
+        "mesh",
+        "F_t, N",
+        "K_A",
+        "K_gamma",
+        "K_v",
+        "K_Hbeta",
+        "computed",
+        "K_Halpha",
+        "K_Falpha",
+    )
     rows = [
         (in_words(mesh.key), mesh.tangential_force, it.application, it.sharing, it.dynamic, it.face,
-         it.face_computed, it.transverse)
+         it.face_computed, it.transverse, it.transverse_bending)
         for mesh in meshes for it in (mesh.factors,)
     ]  # fmt: skip
-    return _table("Load factors after ISO 6336-1", head, (5, *[4] * 6), rows)
+    return _table("Load factors after ISO 6336-1", head, (5, *[4] * 7), rows)
 
 
 def _bearings(found: Strength) -> Table:

@@ -56,9 +56,6 @@ def shaft_parts(draft: Draft, model: Model, train: Train) -> None:
             _pair(draft, train, places, (name, one), borne)
 
 
-# --- places ---------------------------------------------------------------------------------------
-
-
 class _Places:
     """Places along the axis about which the input turns forward, however the gear unit stands."""
 
@@ -176,9 +173,6 @@ def _pair(
         draft.give(key, f"{angle:z.6f} deg", origin)
     elif is_borne:
         draft.lack(key, "support_vector", [end[0] for end in ends], "Default: 0 deg.")
-
-
-# --- bearings -------------------------------------------------------------------------------------
 
 
 def _bearings(draft: Draft, model: Model, train: Train, places: _Places) -> set[str]:

@@ -92,9 +92,6 @@ def write_fmu(data: xr.Dataset, path: Path) -> None:
                     archive.write(file, file.relative_to(folder))
 
 
-# --- code -----------------------------------------------------------------------------------------
-
-
 def _lumped(data: xr.Dataset) -> dict[str, float]:
     """What a temperature that follows from the losses needs; nothing if it is an input."""
     names = (CAPACITY, CONDUCTANCE, SURROUNDINGS)
@@ -195,9 +192,6 @@ def _compile(folder: Path) -> None:
             for extra in library.parent.iterdir():  # the linker of Windows adds some
                 if extra != library:
                     extra.unlink()
-
-
-# --- description ----------------------------------------------------------------------------------
 
 
 def _write_description(path: Path, data: xr.Dataset, lookup: Lookup, guid: str) -> None:

@@ -104,9 +104,6 @@ def _points(data: xr.Dataset, name: str) -> Iterator[tuple[float, float, float]]
             yield float(speed), float(torque), float(values[i, j])
 
 
-# --- VECTO ----------------------------------------------------------------------------------------
-
-
 def vecto_problems(axes: Mapping[str, Sequence[Any]]) -> list[Problem]:
     """What VECTO does not take: it needs motoring, and knows one sense of rotation."""
     problems = _negative_speeds(axes)
@@ -131,9 +128,6 @@ def write_vecto(data: xr.Dataset, path: Path) -> None:
             file.write(",".join(format_number(value, _DIGITS) for value in point) + "\n")
 
 
-# --- EPA GEM --------------------------------------------------------------------------------------
-
-
 def gem_problems(axes: Mapping[str, Sequence[Any]]) -> list[Problem]:
     """What the table of 40 CFR 1037.565 does not have: coasting, and rotation backwards."""
     problems = _negative_speeds(axes)
@@ -149,9 +143,6 @@ def write_gem(data: xr.Dataset, path: Path) -> None:
         file.write("Input Speed [r/min],Input Torque [N*m],Power Loss [kW]\n")
         for speed, torque, watts in _points(data, "total"):
             file.write(f"{speed:.1f},{torque:.2f},{watts / 1000:.4f}\n")
-
-
-# --- Modelica -------------------------------------------------------------------------------------
 
 
 def modelica_problems(axes: Mapping[str, Sequence[Any]]) -> list[Problem]:

@@ -279,7 +279,8 @@ def fit_curves(dependent: BoolArray, samples: Samples, losses: FloatArray) -> Cu
     columns = _columns(samples.values, drawn)
     count, size = columns.shape
     if count <= size:
-        return Curves(dependent, samples.values, np.zeros((size, len(losses))), losses.mean(axis=1))
+        means = known.sum(axis=1) / max(count, 1)
+        return Curves(dependent, samples.values, np.zeros((size, len(losses))), means)
     varies = (known > 0).all(axis=1) & (known.std(axis=1) > ROUNDING * known.max(axis=1))
     slopes = np.zeros((size, len(losses)))
     slopes[:, varies], *_ = np.linalg.lstsq(columns, np.log(known[varies]).T)

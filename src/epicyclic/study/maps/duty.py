@@ -83,7 +83,7 @@ def duty_cycle(
 
     Parameters
     ----------
-    map_or_case : xarray.Dataset, PlanetaryCase or GearPairCase
+    map_or_case : xarray.Dataset, PlanetaryCase, GearPairCase or TrainCase
         A loss map. For a case a map that covers the cycle is computed first.
     cycle : str, Path, pandas.DataFrame or mapping
         A text, Excel or Parquet file, or columns by name: ``"speed [rpm]"``,

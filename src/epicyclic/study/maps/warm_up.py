@@ -339,9 +339,6 @@ def _parsed(case: Case, duration: Any, start: Any) -> tuple[float, float]:
     return seconds, kelvin
 
 
-# --- operation ------------------------------------------------------------------------------------
-
-
 @dataclass(frozen=True, slots=True)
 class _Step:
     """A time in which the operation has one mean."""
@@ -465,9 +462,6 @@ def _sampled(
         plan = replace(drive.plan, axes=(*others, axis))
         tables = plan.prepared(range(plan.size), None).flow_tables
     return heat_samples(case, drive.points, knots, tables, progress)
-
-
-# --- over time ------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, slots=True)

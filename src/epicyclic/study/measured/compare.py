@@ -220,7 +220,7 @@ def compare_measured(
 
     Parameters
     ----------
-    case : PlanetaryCase or GearPairCase
+    case : PlanetaryCase, GearPairCase or TrainCase
         Everything that the table does not state.
     measured : str, Path or pandas.DataFrame
         CSV, Excel or Parquet file, or a table: columns ``speed``, ``torque``, ``temperature`` and

@@ -216,7 +216,7 @@ class MeasuredComparison:
 
     Attributes
     ----------
-    case : PlanetaryCase or GearPairCase
+    case : PlanetaryCase, GearPairCase or TrainCase
         As it was given.
     measured : Measurements
     computed : ndarray, shape (n,)

@@ -833,7 +833,7 @@ def sweep(
 
     Parameters
     ----------
-    case : PlanetaryCase or GearPairCase
+    case : PlanetaryCase, GearPairCase or TrainCase
         Keys that are not varied have their values from here.
     vary : mapping of str to iterable, optional
         Dotted keys to values, ``{"operation.speed": ["1000 rpm", "2000 rpm"]}``: numbers, text
