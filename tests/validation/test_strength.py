@@ -168,6 +168,8 @@ def test_no_tool_is_rounder_than_its_tip_is_wide(member):
 
 
 def test_dynamic_and_transverse_factor_are_as_printed():
+    assert iso.running_in_relief([1500e6, 1500e6]) == pytest.approx(2e-6, rel=5e-3)
+    assert iso.running_in_relief([1130e6, 1480e6]) == pytest.approx(3.08e-6, rel=5e-3)
     moved = iso.Excitation(
         stiffness=18.632e9,
         contact_ratio=1.463,

@@ -12,7 +12,9 @@ SI units, but for empirical formulas that say so.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from functools import cached_property
+from statistics import fmean
 from typing import Literal
 
 import numpy as np
@@ -189,6 +191,11 @@ def running_in(treatment: Treatment, strength: float, deviation: float) -> float
     return min(3e-6, 0.075 * deviation)
 
 
+def running_in_relief(strengths: Iterable[float]) -> float:
+    """C_ay of gears without tip relief, mean of both sigma_Hlim. ISO 6336-1, second hand. [m]"""
+    return fmean((it * MPA / 97 - 18.45) ** 2 / 18 + 1.5 for it in strengths) * 1e-6
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Excitation:
     """What moves the teeth of a mesh against each other beside its load."""
@@ -198,10 +205,10 @@ class Excitation:
     total_contact_ratio: float  # epsilon_gamma. [1]
     pitch_deviation: float  # f_pb or f_f_alpha, the larger one, less running-in. [m]
     form_deviation: float  # f_f_alpha less running-in. [m]
-    tip_relief: float  # C_a, of either gear the smaller one. [m]
+    tip_relief: float  # C_a, of either gear the smaller one; without any C_ay. [m]
 
     def transverse_shares(self, load: float, contact_ratio_factor: float) -> tuple[float, float]:
-        """K_Halpha and K_Falpha, at most those of all load on one pair of teeth. ISO 6336-1. [1]"""
+        """K_Halpha and K_Falpha, at most as of one pair of teeth. ISO 6336-1, Eq. 75, 76. [1]"""
         ratio, found = self.contact_ratio, self.transverse_factor(load)
         bounds = ratio * contact_ratio_factor**2, 0.25 * ratio + 0.75
         of_flank, of_root = (max(1.0, min(found, self.total_contact_ratio / it)) for it in bounds)

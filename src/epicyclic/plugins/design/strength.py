@@ -410,7 +410,7 @@ class _Rating:
             total_contact_ratio=mesh.transverse_contact_ratio + mesh.overlap_ratio,
             pitch_deviation=max(base, form) - worn,
             form_deviation=form - worn_form,
-            tip_relief=min(reliefs),
+            tip_relief=min(reliefs) or iso.running_in_relief(it.contact for it in limits),
         )
         load = table.application_factor * sharing * nominal / width
         dynamic = self._stated(key, "dynamic_factor")
