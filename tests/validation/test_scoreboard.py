@@ -276,6 +276,16 @@ def test_bad_files_are_refused(folder, old, new, message):
         read_sets(file)
 
 
+def test_misspelt_keys_of_measurements_are_told_as_those_of_cases(folder):
+    file = folder / "ours.toml"
+    file.write_text(SET.replace("grade", "grde").replace("columns", "colums"))
+    with pytest.raises(ep.InputError) as error:
+        read_sets(file)
+    remedies = {problem.key: problem.remedy for problem in error.value.problems}
+    assert remedies == {
+        "set[0].colums": "Did you mean 'columns'?", "grde": "Did you mean 'grade'?"}  # fmt: skip
+
+
 def test_limits_are_in_order(folder):
     file = folder / "ours.toml"
     points = "[[1000, 100, 99.3, 99.1, 99.2], [2000, 100, 99.1, 99.6, 99.4]]"

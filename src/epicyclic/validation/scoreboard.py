@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import Field
 from pydantic_core import PydanticCustomError
 
 from epicyclic.arrays import FloatArray
@@ -28,7 +28,9 @@ from epicyclic.dataclass import dataclass, field
 from epicyclic.errors import ConvergenceError, InputError, Problem, one_problem, raise_any
 from epicyclic.files import read_text
 from epicyclic.result.result import versions
-from epicyclic.schema.fields import choices_of
+from epicyclic.schema.fields import Table, choices_of
+from epicyclic.schema.read import plain
+from epicyclic.schema.validation import validate
 from epicyclic.study.bands.plan import INPUT_POWER, nearby_at
 from epicyclic.study.bands.samples import sample_summary
 from epicyclic.study.bands.study import quick_band
@@ -69,10 +71,10 @@ _LARGEST_FILE = 1_000_000  # [bytes]
 # Files of measurements.
 
 
-class _Common(BaseModel):
+class _Common(Table):
     """What a file says of all its sets, and a set of itself, which then counts."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    SHOWN_BY = "the page on validation"
     changes: Keys = Field(default={}, description="Keys of the case that are changed.")
     runs: dict[str, Keys] = Field(
         default={}, description="What else is computed, beside the defaults: name, changed keys."
@@ -87,8 +89,9 @@ class _SetTable(_Common):
     component: str = "total"  # As in a table of `epicyclic.compare_measured`.
     columns: tuple[str, ...] = Field(min_length=2)  # ``"speed [rpm]"``, ``"planet.roughness"``.
     points: tuple[tuple[int | float | str, ...], ...] = Field(min_length=1)
-    loss_factor: float = Field(default=math.nan, gt=0)  # Of a mean friction.
-    over: dict[str, tuple[Any, ...]] = {}  # The tests of a slope: all combinations of these values.
+    loss_factor: float | None = Field(default=None, gt=0)  # Of a mean friction.
+    # The tests of a slope: all combinations of these values.
+    over: dict[str, tuple[Any, ...]] = Field(default={})
 
 
 class _FileTable(_Common):
@@ -146,7 +149,7 @@ class MeasuredSet:
             "friction_torque": loss / speed,
             "loss_share": loss / power,
             "efficiency": 1 - loss / power,
-            "mean_friction": loss / power / self.table.loss_factor,
+            "mean_friction": loss / power / (self.table.loss_factor or math.nan),
         }[quantity]
         return found / _one(quantity, unit)
 
@@ -187,18 +190,15 @@ def read_sets(path: Path | None = None) -> tuple[MeasuredSet, ...]:
 def _sets_of(path: Path) -> Iterator[MeasuredSet]:
     try:
         tables = tomllib.loads(read_text(path, "file of measurements", _LARGEST_FILE))
-        if "set" not in tables:
-            remedy = "The manual, validation, shows such a file."
-            raise one_problem("set", "", "is missing in a file of measurements.", remedy)
-        file = _FileTable.model_validate(tables)
-    except ValidationError as error:
-        raise InputError([
-            Problem(".".join(map(str, it["loc"])), "", f"{it['msg']}.", "")
-            for it in error.errors(include_url=False)
-        ]) from None  # fmt: skip
     except tomllib.TOMLDecodeError as error:
         raise one_problem("", "", f"is not valid TOML: {error}.", "Correct it.") from None
-    given = file.case
+    if "set" not in tables:
+        remedy = "The manual, validation, shows such a file."
+        raise one_problem("set", "", "is missing in a file of measurements.", remedy)
+    read = validate(_FileTable, plain(tables))
+    raise_any(read.problems)
+    assert read.case is not None
+    file, given = read.case, read.case.case
     beside = path.parent / given if isinstance(given, str) else path
     case = read_case(beside if isinstance(given, str) and beside.is_file() else given)
     for table in file.set:
@@ -256,7 +256,7 @@ def _problems(table: _SetTable, quantity: str, unit: str, case: Case) -> Iterato
         elif len(ends) == 2 and float(row[ends[0]]) > float(row[ends[1]]):
             allowed = "has a low limit above the high one."
             yield Problem(f"{key}: point {number}", "", allowed, "Exchange them.")
-    if quantity == "mean_friction" and math.isnan(table.loss_factor):
+    if quantity == "mean_friction" and table.loss_factor is None:
         allowed = "is missing; losses follow from friction with it."
         yield Problem(f"{key}: loss_factor", "", allowed, "Give H_V as the source has it.")
     if (quantity == _SLOPE) != bool(table.over):
