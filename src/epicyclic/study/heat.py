@@ -228,7 +228,7 @@ def _temperature(given: str | float) -> float:
     try:
         return _unit(Temperature).parse(f"{given} K" if isinstance(given, int | float) else given)
     except PydanticCustomError as error:
-        raise InputError([refused(error, "temperature", written(given))]) from None
+        raise InputError([refused(error, "oil temperature to reach", written(given))]) from None
 
 
 def _attempt(base: Case, search: _Search, number: float, target: float) -> Found | None:
