@@ -324,6 +324,13 @@ def test_recommendation_for_the_fluid_of_the_regression_and_for_an_unknown_oil()
     assert "best with measured gears" in why
 
 
+def test_sets_with_two_models_one_of_them_the_default_are_compared():
+    case = ep.load_case("train-eaxle").updated({"sets.pair.models.friction": "schlenk"})
+    rows = compare_friction(case, brief=True)
+    assert recommended(rows)[0].name == "mixed-lubrication"
+    assert not any(row.chosen for row in rows)
+
+
 SHIPPED = [name for name in library.names("oils") if library.oil_model_file(name)]
 
 

@@ -109,6 +109,11 @@ def test_values_of_the_user_go_before_those_of_the_designation():
     assert not catalogue_bearing(both).estimated
 
 
+def test_a_designation_of_digits_alone_needs_no_quotes():
+    assert _table(designation=6210) == _table(designation="6210")
+    assert _table(designation=6210).bore == 50e-3
+
+
 def test_case_with_designations_states_the_estimate():
     keys = {
         "bearings.motor_front": {
@@ -230,6 +235,9 @@ def test_centrifugal_force_on_a_roller():
 def test_thrust_bearing_by_designation():
     case = ep.load_case(TALBOT).updated({"thrust_bearing": {"designation": "51108"}})
     assert case.thrust_bearing.mean_diameter == pytest.approx(50e-3)
+    assert case.thrust_bearing.viscous_factor == 1.5
+    rollers = case.updated({"thrust_bearing": {"designation": 81207}}).thrust_bearing
+    assert (rollers.mean_diameter, rollers.viscous_factor) == (pytest.approx(48.5e-3), 3.5)
     wrong = {"thrust_bearing": {"designation": "51199"}}
     problem = only(problems_of(ep.load_case(TALBOT).updated, wrong))
     assert problem.key == "thrust_bearing.designation"

@@ -40,6 +40,21 @@ def pair(changes):
     return ep.load_case("talbot-2012-pair", {**RUNNING, **changes})
 
 
+@pytest.mark.parametrize(("power", "told"), [("39 W", False), ("3.9 kW", True)])
+def test_a_cooler_that_removes_more_than_the_losses_is_told(power, told):
+    result = solve(pair({**EVERYTHING, "thermal.cooler_power": power}))
+    words = f"thermal.cooler_power removes 3900 W, and all losses are {result.total:.0f} W"
+    assert any(words in note for note in result.notes) == told
+
+
+def test_gears_that_are_sprayed_and_dip_give_heat_both_ways():
+    spray, both, dip = (
+        solve(pair({**EVERYTHING, "thermal.lubrication": way})).heat.temperatures["pinion"]
+        for way in ("spray", "spray-and-dip", "dip")
+    )
+    assert both < min(spray, dip)
+
+
 @pytest.mark.parametrize(
     ("changes", "idle"),
     [
@@ -138,8 +153,8 @@ def test_a_temperature_may_be_a_number_of_kelvin():
         ("oil_flow", "90 degC", "with unlimited thermal.oil_flow it is at 90 °C"),
         ("cooler_power", "150 degC", "with thermal.cooler_power = 0 W it is at 9"),
         ("input_power", "20 degC", r"with operation.torque = 0 N\*m it is at 90"),
-        ("oil_flow", "hot", "temperature = "),
-        ("oil_flow", 20.0, "temperature = "),
+        ("oil_flow", "hot", "oil temperature to reach = "),
+        ("oil_flow", 20.0, "oil temperature to reach = "),
         ("torque", "90 degC", "must be one of cooler_power, oil_flow, input_power"),
     ],
 )

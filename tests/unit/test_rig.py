@@ -53,7 +53,7 @@ def test_half_of_the_baseline_belongs_to_the_reaction_set(asked):
 
 def test_loaded_less_unloaded_of_the_same_set(asked):
     table = asked(RIG).table
-    assert table.component == ("load_independent", "load_dependent") * 4
+    assert table.component == ("total", "load_dependent") * 4
     half = 0.5 * RPM * np.array([1600.0, 18000.0, 4.2 * 3998, 19 * 4001])
     assert table.loss[1] == pytest.approx(half[1] - half[0])
     three = RPM * np.array([1500, 17 * 1001, 13600, 74000]) - half

@@ -215,7 +215,8 @@ def _settings(
 
 def _wet(table: ThermalTable, gear_sets: Sequence[GearSet], to_gears: float | None) -> Wet:
     """How oil gets to some sets."""
-    baths = {"dip": _bath_share(table, gear_sets), "submerged": 1.0}
+    dips = _bath_share(table, gear_sets)
+    baths = {"dip": dips, "spray-and-dip": dips, "submerged": 1.0}
     # how far the flow reaches the temperature of the gears, what misses them included
     effectiveness = 0.0 if table.lubrication in IN_BATH else table.jet_effectiveness
     if to_gears is not None and table.oil_flow and not table.jet_shares:
@@ -372,10 +373,17 @@ def _support(tables: Tables, name: str) -> Support:
     return Support(place + outer, sense, bearing.thrust_ratio, preload)
 
 
-def _assumptions(case: TrainCase) -> dict[str, str]:
-    """What is assumed of bearings where nobody states which of two takes an axial force."""
-    found: dict[str, str] = {}
-    for shaft, tables in borne_shafts(case).items():
+def _remarks(case: TrainCase) -> Iterator[tuple[str, tuple[str, str]]]:
+    """Of bearings, what is assumed of their axial force, and what their force leaves out."""
+    borne = borne_shafts(case)
+    for shaft, tables in borne.items():
+        on_it = [
+            name
+            for own in borne.values()
+            for name, table in own.items()
+            if case.shape.names.get(table.against) == shaft
+        ]
+        lacks = f"the force of {', '.join(on_it)} on {shaft} is not included. Give radial_force."
         angular = [one for one in tables.values() if one.is_angular]
         senses = [one.axial_sense for one in tables.values() if one.locating]
         assumed = ""
@@ -388,8 +396,8 @@ def _assumptions(case: TrainCase) -> dict[str, str]:
             who = "both bearings are" if senses else "no bearing is"
             assumed = f"{who} locating on {shaft}; the first is taken to carry all the axial "
             assumed += "force. Write locating = true for one of them."
-        found |= dict.fromkeys(tables, assumed)
-    return found
+        for name in tables:
+            yield name, (assumed, lacks if on_it else "")
 
 
 def _seats(case: TrainCase, shaft: str, sets: Mapping[str, GearSet]) -> Iterator[GearSeat]:
@@ -501,14 +509,15 @@ def _distances(case: TrainCase) -> dict[str, int]:
 
 def _parts(case: TrainCase | PlanetaryCase, shafts: Mapping[str, str]) -> Iterator[Element]:
     """Bearings, seals and other drags."""
-    assumed = _assumptions(case) if isinstance(case, TrainCase) else {}
+    remarks = dict(_remarks(case)) if isinstance(case, TrainCase) else {}
     for kind, name, table in case.elements:
         assert case.lubricant is not None
         element = build_element(
             kind, name, table, shafts=shafts, oil=case.lubricant.oil, folder=case.folder
         )
-        if assumed.get(name) and isinstance(element, ShaftBearing):
-            element = replace(element, assumed=assumed[name])
+        if name in remarks and isinstance(element, ShaftBearing):
+            assumed, lacks = remarks[name]
+            element = replace(element, assumed=assumed, lacks=lacks)
         yield element
 
 

@@ -537,6 +537,13 @@ def _set_notes(built: Built, solution: Solution) -> Iterator[str]:
 def _solution_notes(case: Case, settled: Settled) -> Iterator[str]:
     """Limits without the value, self-locking, parallel ways, floating teeth, scattering heat."""
     solution, thermal = settled.solution, case.thermal
+    lost = sum(it.watts for it in solution.losses.values())
+    if settled.answer.links and thermal.cooler_power > lost:
+        taken, given_off = (WATT.text(it, 3) for it in (thermal.cooler_power, lost))
+        yield (
+            f"thermal.cooler_power removes {taken}, and all losses are {given_off}: the cooler "
+            "also cools the oil that flows in. Give at most the losses, or cooler_conductance."
+        )
     stated = settled.answer.links and "coolant_temperature" in thermal.model_fields_set
     if stated and thermal.cooler_conductance == 0:
         yield Note("thermal.coolant_temperature has no effect without cooler_conductance.")

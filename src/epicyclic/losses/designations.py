@@ -222,13 +222,15 @@ def with_elements(bearing: DesignatedBearing, diameter: float | None = None) -> 
 def designated_or_any(text: object, other: str = "6208") -> DesignatedBearing:
     """The bearing of a designation; another if there is none, whose key has that problem."""
     try:
-        return designated(text if isinstance(text, str) else other)
+        return designated(str(text))  # that of digits alone may be a number
     except KeyError:
         return designated(other)
 
 
 # What a case takes of a designation: strings and numbers as a file has them.
 
+THRUST_FACTORS = {"thrust-ball": 1.5, "thrust-roller": 3.5}
+"""f0 in an oil bath, Harris (1991); general knowledge. [1]"""
 PLANET_BEARINGS = ("needle", "cylindrical", "spherical")
 
 
@@ -260,11 +262,10 @@ def _planet_keys(raw: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _thrust_keys(raw: Mapping[str, Any]) -> dict[str, Any]:
-    try:
-        bore, outside, _ = thrust_bearing(str(raw["designation"]))
-    except KeyError:  # its key has that problem
-        bore, outside, _ = thrust_bearing("51108")
-    return {"mean_diameter": f"{1e3 * (bore + outside) / 2:g} mm"}
+    found = designated_or_any(raw["designation"], "51108")
+    diameter = f"{1e3 * (found.bore + found.outside_diameter) / 2:g} mm"
+    factor = THRUST_FACTORS.get(found.type, math.nan)  # without one its key has that problem
+    return {"mean_diameter": diameter, "viscous_factor": factor}
 
 
 def _checked(text: str) -> DesignatedBearing:

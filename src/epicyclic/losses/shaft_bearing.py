@@ -11,7 +11,7 @@ from typing import Any, ClassVar, NamedTuple, get_args
 import numpy as np
 
 from epicyclic.dataclass import dataclass
-from epicyclic.losses.designations import SPHERICAL_ANGLE
+from epicyclic.losses.designations import SPHERICAL_ANGLE, THRUST_FACTORS
 from epicyclic.losses.drag import (
     RPM,
     SPEED_PARAMETER,
@@ -55,8 +55,8 @@ TYPE_CONSTANTS: Mapping[tuple[BearingType, Cage], TypeConstants] = {
     ("needle", "full-complement"): TypeConstants(12.0, 0.00055, (5.0, 0.0005), 320e3),
     ("angular-contact", "caged"): TypeConstants(3.3, 0.0005, (2.0, 0.00025), 610e3),
     ("spherical", "caged"): TypeConstants(4.0, 0.00025, (4.0, 0.0002), 500e3),
-    ("thrust-ball", "caged"): TypeConstants(1.5, 0.0004),
-    ("thrust-roller", "caged"): TypeConstants(3.5, 0.0015),
+    ("thrust-ball", "caged"): TypeConstants(THRUST_FACTORS["thrust-ball"], 0.0004),
+    ("thrust-roller", "caged"): TypeConstants(THRUST_FACTORS["thrust-roller"], 0.0015),
 }
 """By type and cage. The keys are the bearings there are."""
 _OF_BALLS: Mapping[BearingType, tuple[float, float]] = {

@@ -302,6 +302,7 @@ class ShaftBearing(ShaftPart):
     reference_speed: float | None = None
     limiting_speed: float | None = None  # None for that of the type. [rad/s]
     assumed: str = ""  # Of its axial force, where nobody states which bearing takes it.
+    lacks: str = ""  # What its force leaves out.
 
     figure_types: ClassVar = (("bearing", ShaftBearingFigures),)
 
@@ -352,9 +353,11 @@ class ShaftBearing(ShaftPart):
             notes=tuple(self._notes(load, least, speed, watts)),
         )
 
-    def _notes(self, load: BearingLoad, least: float, speed: float, watts: float) -> Iterator[Note]:
+    def _notes(self, load: BearingLoad, least: float, speed: float, watts: float) -> Iterator[str]:
         if speed == 0:
             return
+        if self.lacks:
+            yield f"{self.key}: {self.lacks}"  # nobody knows how many watts it means
         # what holds the rolling elements to the races [N]
         both = self.bearing.type in ("deep-groove", "tapered", "spherical")
         carried = math.hypot(load.radial, load.axial) if both else load.radial

@@ -71,7 +71,7 @@ def compare_friction(case: Case, *, brief: bool = False) -> tuple[FrictionCompar
     """
     owners = list(build_computed(case).set_cases.values())
     chosen = {own.chosen["friction"] for own in owners}
-    suiting = {_STANDARD, _ANY_OIL} | (set() if _ANY_OIL in chosen else {_REGRESSION, PAIRED})
+    suiting = {_STANDARD, _ANY_OIL} | (set() if chosen == {_ANY_OIL} else {_REGRESSION, PAIRED})
     rows = []
     for name in dict.fromkeys([*_models_for(owners), *sorted(chosen)]):
         if brief and name not in (*suiting, *chosen):

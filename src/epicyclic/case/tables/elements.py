@@ -139,7 +139,9 @@ class Carrier(Table):
 class ThrustBearing(Table):
     """A thrust bearing that carries negligible load, for its viscous loss."""
 
-    designation: ThrustDesignation | None = option("51108, ...: its mean diameter by ISO 104.")
+    designation: ThrustDesignation | None = option(
+        "51108, ...: mean diameter by ISO 104, f0 of its kind."
+    )
 
     mean_diameter: Length
     between: Literal[

@@ -64,7 +64,7 @@ class Rig:
             table = _less(
                 table, ~idle, idle, ("speed", "temperature"), "without torque", alike=True
             )
-            names = np.where(idle, "load_independent", LOAD_DEPENDENT)
+            names = np.where(idle, "total", LOAD_DEPENDENT)
             table = replace(table, component=tuple(map(str, names)))
         return table
 
