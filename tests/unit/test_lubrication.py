@@ -228,6 +228,12 @@ def test_a_result_says_if_nothing_dips():
     assert words not in ep.solve(pair(DIP)).notes
 
 
+@pytest.mark.parametrize(("level", "told"), [("-12 mm", False), ("490 mm", True)])
+def test_a_result_says_if_all_is_below_the_oil(level, told):
+    words = 'all turning parts are below the oil; method = "submerged" is for that.'
+    assert (words in ep.solve(pair(DIP | {"oil_level": level})).notes) == told
+
+
 def test_depths_of_single_parts_are_those_of_a_level():
     case = pair({"method": "dip", "oil_level": "-12 mm", "oil_volume": "1.9 l"})
     (mesh,) = case.gearings[""].geometries

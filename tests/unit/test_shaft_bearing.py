@@ -476,6 +476,20 @@ def test_table_over_the_load(oil, tmp_path, state):
         ({"type": "cylindrical", "model": "zhou-hoeprich"}, "width"),
         ({"type": "cylindrical", "rib_height": "1 mm"}, "rib_height"),
         ({"type": "cylindrical", "roller_diameter": "20 mm"}, "roller_diameter"),
+        ({"type": "cylindrical", "roller_diameter": "0.9 mm"}, "roller_diameter"),
+        ({"type": "cylindrical", "roller_diameter": "7 mm", "rollers": 27}, "rollers"),
+        ({"rollers": 83}, "rollers"),
+        ({"type": "cylindrical", "width": "18 mm", "roller_length": "19 mm"}, "roller_length"),
+        (
+            {
+                "type": "tapered",
+                "axial_factor": 1.6,
+                "radial_force": "1 kN",
+                "axial_force": "0 N",
+                "preload": "2 kN",
+            },
+            "preload",
+        ),
         (
             {
                 "type": "cylindrical",
@@ -615,6 +629,20 @@ def test_pair_in_a_case_induces_thrust_and_states_its_arrangement(pair_case):
     assert not any("X is assumed" in note for note in same.warnings)
     other = ep.solve(pair_case.updated({"bearings.middle_rear.arrangement": "O"}))
     assert other.total != result.total
+
+
+def test_the_force_of_a_bearing_between_two_shafts_is_not_carried_on_and_told():
+    case = ep.load_case("train-eaxle").updated(
+        {
+            "bearings.middle_rear.against": "differential",
+            "bearings.output_front": {
+                "shaft": "differential", "position": "3 mm", "designation": "6012"},
+            "bearings.output_rear.radial_force": "410 N",
+        }
+    )  # fmt: skip
+    assert "output_front: the force of middle_rear on differential is not included. " in (
+        "".join(ep.solve(case).warnings)
+    )
 
 
 @pytest.mark.parametrize(

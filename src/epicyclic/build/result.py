@@ -523,10 +523,14 @@ def _set_notes(built: Built, solution: Solution) -> Iterator[str]:
             for name, discs in built.sets[key].discs.items()
             if solution.speeds[discs[0].body] != 0
         }
-        discs, oil = chain(*built.sets[key].discs.values()), own.lubrication
-        if oil is not None and oil.method == "dip" and not any(it.dips for it in discs):
-            idle = "no turning part reaches the oil of the sump."
-            yield Note(f"{key}: {idle}") if key else idle
+        discs, oil = [*chain(*built.sets[key].discs.values())], own.lubrication
+        if oil is not None and oil.method == "dip" and discs:
+            wetted = [it.sump.part.wetted_angle if it.dips and it.sump else 0.0 for it in discs]
+            if not any(wetted) or min(wetted) >= math.pi:
+                idle = "no turning part reaches the oil of the sump."
+                if any(wetted):
+                    idle = 'all turning parts are below the oil; method = "submerged" is for that.'
+                yield Note(f"{key}: {idle}") if key else idle
         for note in case_notes(own, found, turning):
             yield Note(f"{key}: {note}", note_watts(note)) if key else note
     for result in solution.results.values():

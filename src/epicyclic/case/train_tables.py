@@ -8,19 +8,8 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field, GetJsonSchemaHandler
 from pydantic_core import CoreSchema
 
-from epicyclic.case.gear_tables import (
-    Gears,
-    GearTable,
-    GivenGear,
-    GivenRing,
-    PairGear,
-    Planet,
-    PressureAngle,
-    Ring,
-    SetMesh,
-    SharedGears,
-    Teeth,
-)
+from epicyclic import units
+from epicyclic.case import gear_tables
 from epicyclic.case.tables.elements import (
     Carrier,
     FromDigits,
@@ -40,18 +29,8 @@ from epicyclic.case.tables.models import (
 )
 from epicyclic.case.tables.operation import ANY_OPERATION, LUBRICATION, LubricationTable
 from epicyclic.schema.fields import Table, option
-from epicyclic.units import (
-    Angle,
-    HelixAngle,
-    Length,
-    Mass,
-    Number,
-    RotationalSpeed,
-    Temperature,
-    Torque,
-)
 
-Efficiency = Annotated[Number, Field(gt=0, le=1)]
+Efficiency = Annotated[units.Number, Field(gt=0, le=1)]
 
 
 class GivenPlanet(Table):
@@ -61,7 +40,7 @@ class GivenPlanet(Table):
     count: int = option("Number of planets.", 3, ge=1, le=99)
 
 
-class GivenListedGear(GivenGear):
+class GivenListedGear(gear_tables.GivenGear):
     """A gear of a listed set of given efficiency."""
 
     body: str | None = option("Gears with the same body turn together. Default: its own.")
@@ -73,12 +52,12 @@ class GivenListedGear(GivenGear):
 class PlanetarySet(Table):
     """A planetary set whose losses are computed: the tables of a planetary case."""
 
-    gears: Gears
-    sun: GearTable
-    planet: Planet
-    ring: Ring
-    sun_mesh: SetMesh = SetMesh()
-    ring_mesh: SetMesh = SetMesh()
+    gears: gear_tables.Gears
+    sun: gear_tables.GearTable
+    planet: gear_tables.Planet
+    ring: gear_tables.Ring
+    sun_mesh: gear_tables.SetMesh = gear_tables.SetMesh()
+    ring_mesh: gear_tables.SetMesh = gear_tables.SetMesh()
     planet_bearing: PlanetBearing | None = None
     planet_pin: PlanetPin | None = None
     load_sharing: LoadSharing = LoadSharing()
@@ -98,8 +77,8 @@ class GivenPlanetarySet(Table):
 
     EXACTLY_ONE = (("efficiency", "mesh_efficiency"),)
 
-    sun: Teeth
-    ring: GivenRing
+    sun: gear_tables.Teeth
+    ring: gear_tables.GivenRing
     planet: GivenPlanet = GivenPlanet()
     efficiency: Efficiency | None = option("Efficiency from sun to ring with the carrier at rest.")
     mesh_efficiency: Efficiency | None = option(
@@ -110,11 +89,11 @@ class GivenPlanetarySet(Table):
 class PairSet(Table):
     """A gear pair whose losses are computed: the tables of a case of a pair."""
 
-    gears: Gears
-    pinion: GearTable
-    gear: PairGear
-    mesh: SetMesh = SetMesh()
-    direction: Angle = option(
+    gears: gear_tables.Gears
+    pinion: gear_tables.GearTable
+    gear: gear_tables.PairGear
+    mesh: gear_tables.SetMesh = gear_tables.SetMesh()
+    direction: units.Angle = option(
         "From the axis of the pinion to that of the gear, for the forces on shaft bearings.",
         "0 deg",
     )
@@ -128,24 +107,24 @@ class PairSet(Table):
 class GivenPair(Table):
     """A gear pair of given efficiency."""
 
-    pinion: Teeth
-    gear: GivenGear
+    pinion: gear_tables.Teeth
+    gear: gear_tables.GivenGear
     efficiency: Efficiency
 
 
-class ListedGear(GivenListedGear, PairGear):
+class ListedGear(GivenListedGear, gear_tables.PairGear):
     """A gear of a listed set whose losses are computed."""
 
-    normal_module: Length | None = option("Default: of [gears].")
-    transverse_module: Length | None = option("Default: of [gears].")
-    normal_pressure_angle: PressureAngle | None = option("Default: of [gears].")
-    transverse_pressure_angle: PressureAngle | None = option("Default: of [gears].")
-    helix_angle: HelixAngle | None = option("Default: of [gears].")
+    normal_module: units.Length | None = option("Default: of [gears].")
+    transverse_module: units.Length | None = option("Default: of [gears].")
+    normal_pressure_angle: gear_tables.PressureAngle | None = option("Default: of [gears].")
+    transverse_pressure_angle: gear_tables.PressureAngle | None = option("Default: of [gears].")
+    helix_angle: units.HelixAngle | None = option("Default: of [gears].")
     hand: Literal["right", "left"] | None = option(
         "Hand of the helix. Default: right for the first gear, the others as their mates "
         "require, the same for gears of one body."
     )
-    mass: Mass | None = option(
+    mass: units.Mass | None = option(
         "Mass of one planet with its rollers, given at one of the gears of its body; its "
         "centrifugal force loads the planet bearing. Default: from its dimensions."
     )
@@ -155,14 +134,14 @@ class ListedGear(GivenListedGear, PairGear):
     )
 
 
-class ListedMesh(SetMesh):
+class ListedMesh(gear_tables.SetMesh):
     """What belongs to one mesh of a listed set, ``[sets.NAME.mesh.GEAR-GEAR]``."""
 
-    center_distance: Length | None = option(
+    center_distance: units.Length | None = option(
         "Default: the one in [gears], that of another mesh of the same planet with a central "
         "gear, or from the profile shifts, x."
     )
-    direction: Angle = option(
+    direction: units.Angle = option(
         "For fixed axes: direction from the axis of the first gear of the pair to that of the "
         "second, for the forces on shaft bearings.",
         "0 deg",
@@ -206,7 +185,7 @@ class _Listed(Table):
 class ListedSet(_Listed):
     """A set whose gears and meshes are listed, with computed losses."""
 
-    gears: SharedGears = SharedGears()
+    gears: gear_tables.SharedGears = gear_tables.SharedGears()
     members: dict[str, ListedGear]
     mesh: dict[str, ListedMesh] = Field(default={})
     planet_bearing: PlanetBearing | None = option(
@@ -257,7 +236,9 @@ def all_gears_to_members(raw: dict[str, Any], *, given: bool) -> dict[str, Any]:
     gears = raw.get("gears", {})
     if not isinstance(gears, dict):
         return raw
-    shared = {key: item for key, item in gears.items() if key in SharedGears.model_fields}
+    shared = {
+        key: item for key, item in gears.items() if key in gear_tables.SharedGears.model_fields
+    }
     members = {key: item for key, item in gears.items() if key not in shared}
     split = {key: value for key, value in raw.items() if key != "gears"} | {"members": members}
     if given:
@@ -315,16 +296,16 @@ class TrainOperation(Table):
     state: StateName | None = option("One of [states].")
     input: str = Field(description="The shaft to which torque and speed belong.")
     output: str = Field(description="The shaft whose torque balances.")
-    torque: Torque = Field(
+    torque: units.Torque = Field(
         description="Torque on the input shaft; negative: coasting, power flows back through it."
     )
-    speed: RotationalSpeed = Field(description="Speed of the input shaft.")
-    oil_inlet_temperature: Temperature | None = option(
+    speed: units.RotationalSpeed = Field(description="Speed of the input shaft.")
+    oil_inlet_temperature: units.Temperature | None = option(
         "Oil temperature at the inlet; needed for computed losses."
     )
-    speeds: dict[str, RotationalSpeed] = option(
+    speeds: dict[str, units.RotationalSpeed] = option(
         "Speeds of further driven shafts, if the train has more degrees of freedom.", {}
     )
-    torques: dict[str, Torque] = option(
+    torques: dict[str, units.Torque] = option(
         "External torques on further shafts, such as a power take-off.", {}
     )
