@@ -631,6 +631,21 @@ def test_pair_in_a_case_induces_thrust_and_states_its_arrangement(pair_case):
     assert other.total != result.total
 
 
+@pytest.mark.parametrize(
+    ("key", "value", "told"),
+    [
+        ("middle_rear.oil_level", "3 mm", "the model palmgren does not use oil_level."),
+        ("middle_rear.palmgren_coefficient", 0.0007, ""),
+        ("middle_front.viscous_factor", 2.3, "the model skf-2018 does not use viscous_factor."),
+        ("middle_front.oil_level", "3 mm", ""),
+    ],
+)
+def test_keys_that_the_model_of_a_bearing_does_not_use_are_told(key, value, told):
+    result = ep.solve(ep.load_case("train-eaxle").updated({f"bearings.{key}": value}))
+    found = [note for note in result.warnings if "does not use" in note]
+    assert found == [f"{key.partition('.')[0]}: {told}"] * bool(told)
+
+
 def test_the_force_of_a_bearing_between_two_shafts_is_not_carried_on_and_told():
     case = ep.load_case("train-eaxle").updated(
         {

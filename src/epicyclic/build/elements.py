@@ -54,6 +54,9 @@ from epicyclic.machine.element import Element
 from epicyclic.machine.shaft_parts import BearingModel, Seal, ShaftBearing, TableLoss
 from epicyclic.oil.oil import Oil, oil_state
 
+_OF_PALMGREN = ("viscous_factor", "palmgren_coefficient", "flange_coefficient")
+_OF_SKF = ("seal", "oil_level", "drag_variable", "sliding_friction", "lubrication")
+"""Keys that bearings of other models do not use."""
 _FORTY_CELSIUS = 313.15  # 40 degC in kelvin.
 
 
@@ -63,12 +66,15 @@ def _bearing(
     force = None
     if table.radial_force is not None or table.axial_force is not None:
         force = BearingLoad(radial=table.radial_force or 0.0, axial=table.axial_force or 0.0)
+    model = _bearing_model(table, oil, folder)
+    foreign = _OF_PALMGREN if model.name not in ("palmgren", "harris") else _OF_SKF
     return ShaftBearing(
         key=name,
         between=bodies,
         bearing=catalogue_bearing(table),
-        model=_bearing_model(table, oil, folder),
+        model=model,
         force=force,
+        idle=tuple(key for key in foreign if key in table.model_fields_set),
         minimum_load_factor=table.minimum_load_factor,
         reference_speed=table.reference_speed,
         limiting_speed=table.limiting_speed,

@@ -541,6 +541,9 @@ def _set_notes(built: Built, solution: Solution) -> Iterator[str]:
 def _solution_notes(case: Case, settled: Settled) -> Iterator[str]:
     """Limits without the value, self-locking, parallel ways, floating teeth, scattering heat."""
     solution, thermal = settled.solution, case.thermal
+    flows = thermal.oil_flow, getattr(case.lubrication, "oil_flow", None)
+    if settled.answer.links and all(flows) and flows[0] != flows[1]:
+        yield Note("Heat leaves by thermal.oil_flow, which differs from lubrication.oil_flow.")
     lost = sum(it.watts for it in solution.losses.values())
     if settled.answer.links and thermal.cooler_power > lost:
         taken, given_off = (WATT.text(it, 3) for it in (thermal.cooler_power, lost))

@@ -356,15 +356,11 @@ _RANGES = {
     ),
     "iso-14179-1": (
         Range(
-            "module",
-            "transverse module",
-            LEAST_MODULE,
-            None,
-            MILLIMETRE,
+            "module", "transverse module", LEAST_MODULE, None, MILLIMETRE,
             "below it, the factor of the teeth approaches zero and is held: limit of this package",
         ),
     ),
-}
+}  # fmt: skip
 _SPLASH_SOURCE = (
     "dip lubrication is recommended below it: P. Walter, after Forsch. Ingenieurwes. 84 (2020), "
     "doi 10.1007/s10010-020-00423-0"

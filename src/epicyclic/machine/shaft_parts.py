@@ -137,15 +137,11 @@ _RANGES: Mapping[SealFormula, tuple[Range, ...]] = {
     "linke": (
         _VITON,
         Range(
-            "bracket",
-            "factor of temperature and viscosity of Linke's seal formula",
-            0.0,
-            None,
-            NUMBER,
-            "it has no meaning below zero; held at zero",
+            "bracket", "factor of temperature and viscosity of Linke's seal formula",
+            0.0, None, NUMBER, "it has no meaning below zero; held at zero",
         ),
     ),
-}
+}  # fmt: skip
 
 
 def seal_loss(
@@ -303,6 +299,7 @@ class ShaftBearing(ShaftPart):
     limiting_speed: float | None = None  # None for that of the type. [rad/s]
     assumed: str = ""  # Of its axial force, where nobody states which bearing takes it.
     lacks: str = ""  # What its force leaves out.
+    idle: tuple[str, ...] = ()  # Keys that are stated and not used by its model.
 
     figure_types: ClassVar = (("bearing", ShaftBearingFigures),)
 
@@ -356,6 +353,9 @@ class ShaftBearing(ShaftPart):
     def _notes(self, load: BearingLoad, least: float, speed: float, watts: float) -> Iterator[str]:
         if speed == 0:
             return
+        if self.idle:
+            told = f"the model {self.model.name} does not use {', '.join(self.idle)}."
+            yield Note(f"{self.key}: {told}", watts)
         if self.lacks:
             yield f"{self.key}: {self.lacks}"  # nobody knows how many watts it means
         # what holds the rolling elements to the races [N]

@@ -228,9 +228,6 @@ def read_grid(
     return Grid(header, tuple(rows), source.name)
 
 
-# --- cells of text --------------------------------------------------------------------------------
-
-
 @dataclass(frozen=True)
 class _Text:
     """Cells of a text file."""
@@ -380,9 +377,6 @@ def cell_text(value: object) -> str:
     """A cell as text, numbers with all their digits."""
     text = "" if value is None else str(value).strip()
     return text.lower() if isinstance(value, bool) else text
-
-
-# --- the head -------------------------------------------------------------------------------------
 
 
 def _of_cells(cells: _Text | _Workbook, name: str, form: TableForm) -> Source:
@@ -615,9 +609,6 @@ def _is_unit(text: str) -> bool:
         return False
 
 
-# --- numbers and times ----------------------------------------------------------------------------
-
-
 def _decimal_mark(
     rows: Sequence[tuple[int, list[str]]], headers: Sequence[str], separator: str, form: TableForm
 ) -> str:
@@ -707,9 +698,6 @@ def _moment_form(headers: list[str], rows: Sequence[Sequence[str]]) -> str:
         refuse(allowed, 'Write them as "2021-03-12 14:05:00".')
     headers[place] = _TIME_OF_DATES
     return next(iter(fitting))
-
-
-# --- Parquet, and tables in memory ----------------------------------------------------------------
 
 
 def _of_parquet(path: Path, name: str, form: TableForm) -> Source:

@@ -143,5 +143,8 @@ def export(
         loaded = case_with_remarks(read_rexs(case, component), parse_changes(changes))
     else:
         loaded = load_with(case, changes)
+    if original is None and component is not None:
+        allowed = "names a stage of ORIGINAL, which is not given."
+        raise one_problem("--component", str(component), allowed, "Add ORIGINAL.", "the command")
     write_file(output, rexs_bytes(output, solve(loaded), original, component))
     echo(f"Wrote {output}.")
