@@ -228,6 +228,13 @@ def test_a_result_says_if_nothing_dips():
     assert words not in ep.solve(pair(DIP)).notes
 
 
+@pytest.mark.parametrize(("level", "told"), [("-400 mm", 0), ("-26.8 mm", 1), ("490 mm", 0)])
+def test_gears_that_lose_less_as_they_dip_than_above_the_oil_say_so(level, told):
+    result = ep.solve(pair(DIP | {"oil_level": level}))
+    found = [note for note in result.notes if "of which none is added" in note]
+    assert len(found) == told
+
+
 @pytest.mark.parametrize(("level", "told"), [("-12 mm", False), ("490 mm", True)])
 def test_a_result_says_if_all_is_below_the_oil(level, told):
     words = 'all turning parts are below the oil; method = "submerged" is for that.'

@@ -29,7 +29,7 @@ from epicyclic.losses.ranges import ModelUse, SomeFlags, ValidityFlag
 from epicyclic.losses.reliability import RELIABILITY
 from epicyclic.losses.shaft_bearing import SHAFT_BEARING_RELIABILITY
 from epicyclic.losses.windage import DRAG_METHODS, LAMINAR_RIMS, DragModel
-from epicyclic.machine.disc import churned, drags_by_model
+from epicyclic.machine.disc import churned, disc_loss, drags_by_model
 from epicyclic.machine.element import OIL, Figures, Note, State, joined_key, note_watts
 from epicyclic.machine.gear_mesh import MeshFigures
 from epicyclic.machine.gear_set import GearSet, GearSetResult
@@ -526,11 +526,22 @@ def _set_notes(built: Built, solution: Solution) -> Iterator[str]:
         discs, oil = [*chain(*built.sets[key].discs.values())], own.lubrication
         if oil is not None and oil.method == "dip" and discs:
             wetted = [it.sump.part.wetted_angle if it.dips and it.sump else 0.0 for it in discs]
-            if not any(wetted) or min(wetted) >= math.pi:
-                idle = "no turning part reaches the oil of the sump."
-                if any(wetted):
-                    idle = 'all turning parts are below the oil; method = "submerged" is for that.'
+            idle = "" if any(wetted) else "no turning part reaches the oil of the sump."
+            if min(wetted) >= math.pi:
+                idle = 'all turning parts are below the oil; method = "submerged" is for that.'
+            if idle:
                 yield Note(f"{key}: {idle}") if key else idle
+            for disc in (it for it in discs if it.dips):
+                dips, above = (
+                    disc_loss([it], solution.state)[0].watts
+                    for it in (disc, replace(disc, sump=None))
+                )
+                if dips < above:
+                    words = (
+                        f"{disc.where}: it dips and loses {WATT.text(dips, 3)} by churning; above "
+                    )
+                    words += f"the oil it would lose {WATT.text(above, 3)}, of which none is added."
+                    yield Note(f"{key}: {words}" if key else words, above - dips)
         for note in case_notes(own, found, turning):
             yield Note(f"{key}: {note}", note_watts(note)) if key else note
     for result in solution.results.values():

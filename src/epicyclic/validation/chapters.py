@@ -116,7 +116,6 @@ _TEMPERATURE = Lever(
 _ROUGHNESS = {0.063: (0.06, 0.02), 0.125: (0.06, 0.11), 0.149: (0.10, 0.11), 0.180: (0.10, 0.15)}
 """Composite roughness, and that of roller and race. p. 70. [um]"""
 
-
 _CURVES = {
     "roughness": Lever(
         "roughness", "composite roughness", "um", tuple(_ROUGHNESS),
@@ -261,7 +260,7 @@ def _drawn(**values: tuple[xr.DataArray, str, str]) -> xr.Dataset:
     return found
 
 
-_TOTAL, _LOADED = "total loss", "load-dependent loss"
+_TOTAL, _LOADED, _SPIN = "total loss", "load-dependent loss", "load-independent loss"
 _SHAVED = list(_SETS)[:4]
 
 
@@ -301,9 +300,6 @@ def _saved(figure: str, data: xr.Dataset) -> Family:
     saved = total.sel(set="6 shaved") - total.sel(set="6 polished")
     found = _drawn(saved=(saved / 1e3, "loss that polished planets save", "kW"))
     return Family(figure, f"6 shaved less 6 polished planets, {temperature} °C", found)
-
-
-_SPIN = "load-independent loss"
 
 
 def _spin(figure: str, data: xr.Dataset) -> Family:

@@ -29,7 +29,6 @@ from epicyclic.validation.compute import (
 
 # The open figures of the published study of pocketing losses, for each model of the flow.
 
-
 CLOSURES = ("incompressible", "isentropic", "mean-density", "talbot-2012")
 """Models that are compared; "central-differences" has no solution for some of the figures."""
 

@@ -45,7 +45,6 @@ from epicyclic.study.solve import loaded_meshes, mesh_contacts, solve
 # Each takes plain values as `programs.toml` has them, among them the name of a case in the folder
 # ``cases``, and returns a number in the unit stated there.
 
-
 _GEOMETRY: dict[str, Callable[[Mesh], float]] = {
     "pressure_angle": lambda mesh: math.degrees(mesh.operating_pressure_angle),
     "path_of_contact": lambda mesh: 1e3 * (mesh.path_end - mesh.path_start),

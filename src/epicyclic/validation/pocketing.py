@@ -39,11 +39,9 @@ from epicyclic.validation.compute import NOMINAL_BACKLASH
 if TYPE_CHECKING:
     import xarray as xr
 
-
 # Variants of a mesh as the pocketing study compares them. Talbot (2012), section 4.4.
 
 ROUNDING = 1e-9  # What is less negative is left over from rounding. [m] or [1]
-
 
 FEWEST_TEETH = 5
 
@@ -223,7 +221,6 @@ STUDIES = {
 }
 
 LEVELS = ("speed", "helix-angle", "face-width")  # Parameters that have curves or panels.
-
 
 NUMBERS = {
     "pocketing_loss": "power",

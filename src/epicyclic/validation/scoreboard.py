@@ -67,7 +67,6 @@ _ROLES = {"speed": ("speed",), "load": ("torque", "force"), "temperature": ("tem
 """Trends, and how the keys end over which they go."""
 _LARGEST_FILE = 1_000_000  # [bytes]
 
-
 # Files of measurements.
 
 

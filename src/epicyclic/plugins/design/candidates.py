@@ -203,7 +203,6 @@ LAYOUTS: dict[str, Layout] = {
 """By the names of `choices.arrangements`."""
 SHARED = ("planets", "module", "helix", "shift", "distance_shift", "width_ratio", "module2")
 
-
 MOST_TEETH = 1_000_000  # Combinations of teeth of an arrangement.
 
 

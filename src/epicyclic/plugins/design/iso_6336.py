@@ -29,7 +29,6 @@ Numbers = FloatArray | float
 MM, MPA = 1e3, 1e-6
 Treatment = Literal["case-hardened", "through-hardened", "nitrided"]
 
-
 # Pitting: stresses.
 
 

@@ -121,7 +121,6 @@ def as_list(found: tuple[Part, ...]) -> list[dict[str, str | float]]:
 
 # What a model of rotor dynamics takes of a case.
 
-
 HARMONICS = 10  # Of the mesh frequency, at most.
 POSITIONS = 4  # Mesh positions over one wave of the highest harmonic, at least.
 
