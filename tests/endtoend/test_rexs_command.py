@@ -84,6 +84,7 @@ def test_bad_files_and_keys_write_nothing(command, folder):
         ("rexs", "import", "gears.rexs", "--set", "pinion.no_key=1"),
         ("rexs", "export", "gears.rexs", "-o", "out.toml"),
         ("rexs", "export", "talbot-2012-pair", "gears.rexs", "-o", "out.rexs", *COARSE),
+        ("rexs", "export", "talbot-2012-pair", "-o", "out.rexs", "--component", "99", *COARSE),
     ):
         code, _, told = command(*arguments)
         assert code == 2, arguments

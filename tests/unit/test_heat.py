@@ -47,6 +47,13 @@ def test_a_cooler_that_removes_more_than_the_losses_is_told(power, told):
     assert any(words in note for note in result.notes) == told
 
 
+@pytest.mark.parametrize(("flow", "told"), [("2.3 l/min", False), ("3.1 l/min", True)])
+def test_flows_that_differ_are_told(flow, told):
+    oil = {"lubrication.method": "spray", "lubrication.oil_flow": flow, "thermal.housing": None}
+    notes = solve(pair({**EVERYTHING, **oil})).notes
+    assert any("differs from lubrication.oil_flow" in note for note in notes) == told
+
+
 def test_gears_that_are_sprayed_and_dip_give_heat_both_ways():
     spray, both, dip = (
         solve(pair({**EVERYTHING, "thermal.lubrication": way})).heat.temperatures["pinion"]
