@@ -41,6 +41,14 @@ def oil(case):
     return fluids_of(case).oil
 
 
+def test_the_default_says_which_of_two_models_it_is():
+    words = "models.bearing = auto is Palmgren's formula for rollers without a cage"
+    case = ep.load_case("talbot-2012").updated({"planet_bearing.cage": "full-complement"})
+    assert any(words in note for note in ep.solve(case).notes)
+    stated = case.updated({"models.bearing": "palmgren"})
+    assert not any(words in note for note in ep.solve(stated).notes)
+
+
 def test_a_roller_weighs_on_the_next_one_until_a_loaded_one_holds_it():
     loaded = np.array([False, True, False, False, False, True])
     along = np.array([1.0, 9.0, 2.0, 4.0, -3.0, 9.0])

@@ -58,6 +58,16 @@ def of_mesh(kind, mesh, **keys):
 # --- what a listed set is built of ----------------------------------------------------------------
 
 
+def test_models_that_those_of_a_set_replace_are_told():
+    case = ep.load_case("train-eaxle").updated({"models.friction": "benedict-kelley"})
+    own = case.updated({"sets.pair.models.drag": "anderson-loewenthal"})
+    words = "sets.pair.models replaces [models]; not used for this set: friction."
+    assert words in ep.solve(own).notes
+    assert words not in ep.solve(case).notes
+    both = own.updated({"sets.pair.models.friction": "schlenk"})
+    assert words not in ep.solve(both).notes
+
+
 def test_losses_have_the_names_of_their_meshes_bodies_and_gears():
     shape = gearing_of("stepped")
     assert shape.terms == (

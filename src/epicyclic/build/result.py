@@ -141,6 +141,12 @@ def _notes_of_tables(case: SetCase) -> tuple[tuple[str, ...], tuple[str, ...]]:
     if case.gearing.listed and case.models.mesh_loads == "without-losses":
         without = "models.mesh_loads = without-losses"
         behind.append(f"{without} has no effect on a set whose gears are listed.")
+    bare = any(getattr(it, "cage", "") == "full-complement" for it in case.bearings.values())
+    if bare and case.models.bearing == "auto":
+        behind.append(
+            "models.bearing = auto is Palmgren's formula for rollers without a cage; "
+            "full-complement computes how they rub on each other."
+        )
     for key in sorted(case.models.model_fields_set & {key for _, key in ONLY_WITH}):
         roles, words = ONLY_WITH["models", key]
         chosen = [case.chosen.get(role, "") for role in roles]
@@ -572,6 +578,11 @@ def _solution_notes(case: Case, settled: Settled) -> Iterator[str]:
         tables = (table.lubrication for _, table in case.computed_sets)
         if case.lubrication not in tables:
             yield Note("lubrication.oil_level has no effect: no set dips by it.")
+    for name, own in case.computed_sets if isinstance(case, TrainCase) else ():
+        beside = case.models.model_fields_set - own.models.model_fields_set
+        idle = ", ".join(it for it in sorted(beside) if it in type(own.models).model_fields)
+        if idle:
+            yield Note(f"sets.{name}.models replaces [models]; not used for this set: {idle}.")
     if solution.jammed and isinstance(case, TrainCase):
         yield (
             "Self-locking: under this torque on the input, friction in the meshes keeps the "

@@ -12,7 +12,6 @@ from epicyclic.units import format_number, percent
 
 # Numbers and units as tables show them.
 
-
 MISSING = "-"  # Stands where there is no number.
 
 _ROUNDING_NOISE = 1e-9
@@ -35,7 +34,6 @@ def error_text(share: float) -> str:
 
 
 # What a page of a report consists of.
-
 
 SHORT = 6  # Lines of a table that is not divided between pages.
 LINE = 60  # Characters of a cell that stand in one line, about.

@@ -214,7 +214,6 @@ def _numbers(result: Result) -> xr.Dataset:
 
 # Checks of what a file holds, so that reports and plots can rely on it.
 
-
 RUN_AGAIN = (
     "Write it again: epicyclic run CASE --save FILE.nc, or epicyclic map CASE ... -o FILE.nc."
 )
@@ -418,7 +417,6 @@ def _uncertainty_problems(path: str, data: xr.Dataset) -> Iterator[Problem]:
 
 
 # Files of results: one NetCDF file with a group for each field, readable without this package.
-
 
 SUFFIX = ".nc"
 FORMAT = "epicyclic result"

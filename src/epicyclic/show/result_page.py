@@ -85,7 +85,6 @@ _INPUT_LEAD = (
     "out."
 )
 
-
 BAND_LEAD = (
     "95 % interval of the result from the uncertainty of inputs and models, with each varied up "
     "and down by one standard deviation. 'epicyclic uncertainty' computes it from samples."
@@ -311,9 +310,7 @@ _CHAPTERS: Mapping[str, Callable[[ResultRecord, Drawings], _Chapter]] = {
 }
 """By name; each computes nothing of a growing record that it does not show."""
 
-
 # The report of a loss map: its chapters.
-
 
 _WHITE = "White: no power is transmitted, or the point failed."
 _FOUND = re.compile(r"(Out of range: .*?) -?\d[^;]*;")
@@ -453,7 +450,6 @@ def _map_methods(data: xr.Dataset) -> tuple[Table | Listing, ...]:
 
 
 # The report of a sweep: its chapters.
-
 
 MOST_ROWS = 12  # Most rows of the table of points.
 _POINTS_LEAD = "The points with the least total loss and the one with the largest."

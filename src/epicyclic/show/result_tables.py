@@ -54,7 +54,6 @@ from epicyclic.units import (
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
-
 Unit = tuple[str, float]  # Its name in print and its size.
 _FLOW_NOTE = (
     "All speeds are positive in the same sense of rotation. Torques act from outside; power is "
@@ -304,7 +303,6 @@ def standing_items(result: Result) -> Iterator[Listing]:
 
 # Tables of the result of a train, for pages and terminals.
 
-
 SHORT_HEADS = {
     "radial_force": "radial",
     "axial_force": "axial",
@@ -501,7 +499,6 @@ def _circulation_text(rolling: Mapping[str, float], input_power: float) -> str:
 
 
 # Temperatures and the heat balance, as tables of pages and terminals, and what they mean.
-
 
 NOT_LOOKED_AT = (
     "The flank temperatures were not computed: with models.friction = ehl-direct that takes "

@@ -26,9 +26,7 @@ from epicyclic.units import decimals_of, format_number, percent, unit_text
 if TYPE_CHECKING:
     import pandas as pd
 
-
 # A loaded mesh in tables: position by position, and its extremes with where they occur.
-
 
 _OVER_PERIOD = ("transmission_error", "mesh_stiffness")
 _EXTREMES = (
@@ -197,7 +195,6 @@ def _table(title: str, *more: str) -> Table:
 
 
 # Measured losses beside computed ones, for a terminal.
-
 
 MOST_POINTS = 40  # Points that are shown; JSON and the table in Python have all.
 
@@ -465,7 +462,6 @@ def duty_json(data: xr.Dataset) -> str:
 
 
 # Warming up as tables, for a terminal and for files.
-
 
 _UNITS = (("h", 3600.0), ("min", 60.0), ("s", 1.0))
 _SHOWN_CONSTANTS = 4

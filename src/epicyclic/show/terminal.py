@@ -107,7 +107,6 @@ def _widths(needs: Sequence[_Need], room: int) -> list[int]:
 
 # Tables of results, libraries and comparisons for a terminal.
 
-
 PIPE_WIDTH = 100
 """Width of tables that do not go to a terminal, unless COLUMNS says another. [characters]"""
 

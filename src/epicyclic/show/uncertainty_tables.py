@@ -37,7 +37,6 @@ from epicyclic.units import (
 if TYPE_CHECKING:
     import xarray as xr
 
-
 LIMITS = "Limits of confidence"
 FEW = 2  # Limits that a short list names.
 WORTH = 0.98  # Part of the band above which a measurement is not worth while. [1]

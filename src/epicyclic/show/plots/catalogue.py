@@ -410,7 +410,6 @@ def about(stored: Stored) -> tuple[str, str]:
 #
 # Every plot is thus written once. What has no counterpart (drawings) stays a still figure.
 
-
 DASHES = {"-": "solid", "--": "dash", "-.": "dashdot", ":": "dot"}
 DIGITS = 7  # Significant digits of values in the page.
 COLOUR_STEPS = 32
@@ -703,7 +702,6 @@ def _escaped(text: str) -> str:
 
 
 # Figures of a page: still ones as SVG within the page, and their data to explore.
-
 
 PAGE_PANEL = (4.3, 3.1)  # Width and height of a figure in a page. [inch]
 _PROLOGUE = re.compile(r".*?(?=<svg)", re.DOTALL)

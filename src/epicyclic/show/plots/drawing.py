@@ -244,7 +244,6 @@ def _some_teeth(gear: xr.Dataset, turn: float, half: float) -> FloatArray:
 # A page turns the layers of the gears and shows one position after the other; a file has one of
 # them.
 
-
 POSITION = "position"
 """Layers of a mesh position are called so, with its number and that of their Axes."""
 POINTS_PER_INCH = 72

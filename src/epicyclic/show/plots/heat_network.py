@@ -23,11 +23,9 @@ from epicyclic.units import CELSIUS, format_number, unit_text
 if TYPE_CHECKING:
     import xarray as xr
 
-
 # The network of heat: parts in a row, shafts above, oil and housing as rails below, then outside.
 #
 # Every length is in inches on a slide of 16 to 9.
-
 
 FLOW, PAPER = "#5b7fa6", "#ffffff"
 HEAT_COLOURS = "YlOrRd"

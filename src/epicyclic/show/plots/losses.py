@@ -22,7 +22,6 @@ from epicyclic.units import decimals_of, format_number, part_text, percent, powe
 if TYPE_CHECKING:
     import xarray as xr
 
-
 GROUP_COLOURS = {"load-dependent": COLOURS[0], "load-independent": COLOURS[4]}
 EDGE: Any = {"edgecolor": "black", "linewidth": 0.5}
 SUM_COLOUR = "0.45"
@@ -141,7 +140,6 @@ def _labels(result: Result) -> dict[str, str]:
 
 
 # How well a result is known: its distribution, and what that is due to.
-
 
 MOST_DRIVERS = 12
 RARE = 0.003  # Share of samples beyond each end of a distribution, which it leaves out. [1]

@@ -38,7 +38,6 @@ from epicyclic.units import known_text
 # All functions take one mesh as `epicyclic.pocket_details` returns it, draw on given Axes and
 # return them.
 
-
 OVER_LIFE = ("pressure", "axial_speed", "contact_gap_speed", "backlash_gap_speed")
 """Variables drawn over the life of a pocket."""
 DRAWN_SLICES = 9  # Most slices that are drawn one by one.
@@ -330,7 +329,6 @@ def _row_of_teeth(tooth: FloatArray, teeth: int, one: float, span: float) -> Flo
 
 
 # A mesh in motion, the pressure in its pockets as colour.
-
 
 FRAMES = 32  # Frames of one mesh period, at most; the picture repeats after it.
 FRAMES_PER_SECOND = 12

@@ -20,7 +20,6 @@ from epicyclic.units import RPM, known_text, percent, torque_text, unit_text
 
 # Shapes that the slides of power and of heat have in common. Every length is in inches.
 
-
 INK, SOFT = "#1a1d21", "#5b6470"  # Colours of words and of edges.
 _ROUND = 0.04  # Radius of the corners of a box.
 
@@ -66,7 +65,6 @@ def fit(letter: float, text: str, room: float, size: float) -> float:
 # The power flow of a train: sets as columns, shafts as lines, arrows as wide as the power.
 #
 # Every length is in inches on a slide of 16 to 9.
-
 
 SLIDE = (13.33, 7.5)  # Width and height. [inch]
 THROUGH, CIRCULATING, LOST = COLOURS[0], COLOURS[4], COLOURS[1]
