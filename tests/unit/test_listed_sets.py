@@ -64,6 +64,8 @@ def test_models_that_those_of_a_set_replace_are_told():
     words = "sets.pair.models replaces [models]; not used for this set: friction."
     assert words in ep.solve(own).notes
     assert words not in ep.solve(case).notes
+    warm = own.updated({"models.friction": None, "models.temperatures": "network"})
+    assert not any("replaces [models]" in note for note in ep.solve(warm).notes)
     both = own.updated({"sets.pair.models.friction": "schlenk"})
     assert words not in ep.solve(both).notes
 

@@ -580,6 +580,7 @@ def _solution_notes(case: Case, settled: Settled) -> Iterator[str]:
             yield Note("lubrication.oil_level has no effect: no set dips by it.")
     for name, own in case.computed_sets if isinstance(case, TrainCase) else ():
         beside = case.models.model_fields_set - own.models.model_fields_set
+        beside -= {"temperatures", "load_dependent"}  # which hold for the whole train
         idle = ", ".join(it for it in sorted(beside) if it in type(own.models).model_fields)
         if idle:
             yield Note(f"sets.{name}.models replaces [models]; not used for this set: {idle}.")

@@ -70,17 +70,8 @@ def _flanks(found: Strength) -> Table:
 
 
 def _factors(meshes: Sequence[MeshRating]) -> Table:
-    head = (
-        "mesh",
-        "F_t, N",
-        "K_A",
-        "K_gamma",
-        "K_v",
-        "K_Hbeta",
-        "computed",
-        "K_Halpha",
-        "K_Falpha",
-    )
+    head = ("mesh", "F_t, N", "K_A", "K_gamma", "K_v", "K_Hbeta", "computed", "K_Halpha",
+            "K_Falpha")  # fmt: skip
     rows = [
         (in_words(mesh.key), mesh.tangential_force, it.application, it.sharing, it.dynamic, it.face,
          it.face_computed, it.transverse, it.transverse_bending)
