@@ -537,16 +537,14 @@ def _set_notes(built: Built, solution: Solution) -> Iterator[str]:
                 idle = 'all turning parts are below the oil; method = "submerged" is for that.'
             if idle:
                 yield Note(f"{key}: {idle}") if key else idle
-            for disc in (it for it in discs if it.dips):
-                dips, above = (
-                    disc_loss([it], solution.state)[0].watts
-                    for it in (disc, replace(disc, sump=None))
-                )
+            for disc in discs:
+                if (sump := disc.sump) is None or not disc.dips:
+                    continue
+                dips = sump.power(sump.model, solution.speeds[disc.body], solution.state)
+                above = disc_loss([replace(disc, sump=None)], solution.state)[0].watts
                 if dips < above:
-                    words = (
-                        f"{disc.where}: it dips and loses {WATT.text(dips, 3)} by churning; above "
-                    )
-                    words += f"the oil it would lose {WATT.text(above, 3)}, of which none is added."
+                    words = f"{disc.where}: by churning, it loses {WATT.text(dips, 3)}; above the "
+                    words += f"oil it would lose {WATT.text(above, 3)}, of which none is added."
                     yield Note(f"{key}: {words}" if key else words, above - dips)
         for note in case_notes(own, found, turning):
             yield Note(f"{key}: {note}", note_watts(note)) if key else note
