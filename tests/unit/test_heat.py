@@ -54,6 +54,14 @@ def test_flows_that_differ_are_told(flow, told):
     assert any("differs from lubrication.oil_flow" in note for note in notes) == told
 
 
+def test_an_outlet_temperature_without_losses_is_told_as_such():
+    still = {**FLOW, "thermal.oil_flow": None, "operation.speed": "0 rpm"}
+    outlet = {"thermal.oil_outlet_temperature": "110 degC", "models.temperatures": "network"}
+    with pytest.raises(InputError, match="without losses the leaving oil has no heat") as error:
+        solve(pair({**still, **outlet}))
+    assert [it.key for it in error.value.problems] == ["thermal.oil_outlet_temperature"]
+
+
 def test_gears_that_are_sprayed_and_dip_give_heat_both_ways():
     spray, both, dip = (
         solve(pair({**EVERYTHING, "thermal.lubrication": way})).heat.temperatures["pinion"]

@@ -101,6 +101,11 @@ def test_tables_of_all_kinds_are_the_same_cycle(cycle, name):
     assert duration == pytest.approx(7, rel=1e-6)
 
 
+def test_a_text_file_has_no_sheets(cycle):
+    with pytest.raises(ep.InputError, match='has no sheet "run 2", as it is no workbook'):
+        cycle(PLAIN, form=parse_form([], sheet="run 2"))
+
+
 HEAD = ["time [s]", "speed [rpm]", "torque [N*m]"]
 ROWS = [[0, 420, 310], [7, 890, 28.5]]
 

@@ -679,6 +679,10 @@ class NetworkModel:
                 allowed += f"{known_text(lost)}."
                 remedy = "Give less, or thermal.oil_flow instead of thermal.oil_outlet_temperature."
                 raise one_problem("thermal.cooler_power", known_text(power), allowed, remedy)
+            if own.outlet is not None and not any(heat.values()):
+                allowed = "cannot be reached: without losses the leaving oil has no heat."
+                key, shown = "thermal.oil_outlet_temperature", celsius_text(own.outlet, 4)
+                raise one_problem(key, shown, allowed, "Give thermal.oil_flow, or a speed.")
             allowed = f"the heat of {', '.join(left)} has no path out of the gearbox."
             raise one_problem("thermal", "", allowed, _OUTLET_REMEDY)
         # parts at rest, which nothing heats or cools, are as warm as the oil

@@ -179,6 +179,8 @@ def open_table(table: Any, form: TableForm = AS_IT_IS) -> Source:
         if suffix not in SUFFIXES:
             old = "Save it as .xlsx." if suffix in (".xls", ".xlsb", ".ods") else ""
             refuse(f"must end in {', '.join(SUFFIXES)}.", old or "Choose one of these formats.")
+        if form.sheet and suffix not in EXCEL:
+            refuse(f'has no sheet "{one_line(form.sheet)}", as it is no workbook.', "Omit --sheet.")
         if suffix in PARQUET:
             return _of_parquet(path, name, form)
         return _of_cells(_Workbook(path, form) if suffix in EXCEL else _Text(path), name, form)
