@@ -559,9 +559,9 @@ def _solution_notes(case: Case, settled: Settled) -> Iterator[str]:
     flows = thermal.oil_flow, getattr(case.lubrication, "oil_flow", None)
     if settled.answer.links and all(flows) and flows[0] != flows[1]:
         yield Note("Heat leaves by thermal.oil_flow, which differs from lubrication.oil_flow.")
-    lost = sum(it.watts for it in solution.losses.values())
-    if settled.answer.links and thermal.cooler_power > lost:
-        taken, given_off = (WATT.text(it, 3) for it in (thermal.cooler_power, lost))
+    power = thermal.cooler_power if settled.answer.links else 0.0
+    if power and power > (lost := sum(it.watts for it in solution.losses.values())):
+        taken, given_off = (WATT.text(it, 3) for it in (power, lost))
         yield (
             f"thermal.cooler_power removes {taken}, and all losses are {given_off}: the cooler "
             "also cools the oil that flows in. Give at most the losses, or cooler_conductance."
@@ -576,8 +576,9 @@ def _solution_notes(case: Case, settled: Settled) -> Iterator[str]:
         tables = (table.lubrication for _, table in case.computed_sets)
         if case.lubrication not in tables:
             yield Note("lubrication.oil_level has no effect: no set dips by it.")
-    for name, own in case.computed_sets if isinstance(case, TrainCase) else ():
-        beside = case.models.model_fields_set - own.models.model_fields_set
+    stated_models = case.models.model_fields_set
+    for name, own in case.computed_sets if stated_models and isinstance(case, TrainCase) else ():
+        beside = stated_models - own.models.model_fields_set
         beside -= {"temperatures", "load_dependent"}  # which hold for the whole train
         idle = ", ".join(it for it in sorted(beside) if it in type(own.models).model_fields)
         if idle:
