@@ -155,7 +155,7 @@ def test_a_size_that_is_not_that_of_the_designation_is_named():
     found = problems_of(case.updated, {f"{front}.designation": "6208"})
     assert [(it.key, it.value) for it in found] == [
         (f"{front}.bore", "35 mm"), (f"{front}.outside_diameter", "72 mm")]  # fmt: skip
-    assert ["40 mm for 6208" in found[0].allowed, "80 mm for 6208" in found[1].allowed] == [1, 1]
+    assert [it.allowed for it in found] == ["is 40 mm for 6208.", "is 80 mm for 6208."]
 
 
 # --- planets --------------------------------------------------------------------------------------

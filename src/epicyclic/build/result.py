@@ -554,7 +554,7 @@ def _set_notes(built: Built, solution: Solution) -> Iterator[str]:
 
 
 def _solution_notes(case: Case, settled: Settled) -> Iterator[str]:
-    """Limits without the value, self-locking, parallel ways, floating teeth, scattering heat."""
+    """What is stated to no effect or beyond sense, and what is odd about torques and heat."""
     solution, thermal = settled.solution, case.thermal
     flows = thermal.oil_flow, getattr(case.lubrication, "oil_flow", None)
     if settled.answer.links and all(flows) and flows[0] != flows[1]:

@@ -275,8 +275,8 @@ class BearingSealTable(Table):
 
 _OF_TAPERED = ("rollers", "roller_diameter", "roller_length", "rib_height", "rib_roughness")
 _OF_OTHERS = {"cylindrical": 3, "thrust-roller": 3, "deep-groove": 2, "thrust-ball": 2}  # of these
-# Diameter of rolling elements over half of D - d: the least of any, and of those whose diameter is
-# not stated; needles have 0.2 to 0.4, others more. [1]
+# Diameter of rolling elements over half of D - d: below that of any, and the least where it is not
+# stated; needles have 0.2 to 0.4, others 0.5 to 0.75 (estimates by catalogues, `ELEMENTS`). [1]
 _FINEST, _SLIMMEST = 0.1, 0.2
 _ROUNDED = 0.01  # Of a size that the designation states too. [1]
 _THINNEST, _THICKEST = 1.03, 6.0  # D over d: thin sections have 1.04, a 633 4.3 (catalogues). [1]
