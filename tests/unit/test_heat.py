@@ -70,18 +70,42 @@ def test_gears_that_are_sprayed_and_dip_give_heat_both_ways():
     assert both < min(spray, dip)
 
 
+BARE = {"thermal.lubrication": "spray", "thermal.cooler_conductance": "0 W/K"}
+HOUSED = {"thermal.housing.area": "0.31 m^2", "thermal.housing.fin_factor": 1.7}
+OLD = {"thermal.housing.method": "iso-14179-1"}
+
+
 @pytest.mark.parametrize(
-    ("changes", "idle"),
+    ("changes", "key"),
     [
-        ({}, False),
-        ({"thermal.coolant_temperature": "37 degC"}, True),
-        ({"thermal.coolant_temperature": "37 degC", "thermal.cooler_conductance": "3 W/K"}, False),
-        ({"thermal.coolant_temperature": "37 degC", "models.temperatures": "inlet"}, False),
+        ({"thermal.coolant_temperature": "37 degC"}, "coolant_temperature"),
+        ({"thermal.bulk": "iso-6336-22"}, "bulk"),
+        ({"thermal.bath_share": 0.21}, "bath_share"),
+        ({"thermal.lubrication": "dip", "thermal.jet_effectiveness": 0.7}, "jet_effectiveness"),
+        ({**HOUSED, **OLD}, "housing.fin_factor"),
+        ({**HOUSED, "thermal.housing.coefficient": "17 W/(m^2*K)"}, "housing.coefficient"),
     ],
 )
-def test_a_coolant_without_a_cooler_has_no_effect_and_is_told(changes, idle):
-    notes = solve(pair({**EVERYTHING, **changes})).notes
-    assert any("coolant_temperature has no effect" in note for note in notes) == idle
+def test_keys_without_effect_on_the_network_are_told(changes, key):
+    notes = solve(pair({**EVERYTHING, **BARE, **changes})).notes
+    assert [it for it in notes if "has no effect" in it and f"thermal.{key} " in it]
+    assert sum("thermal." in it and "has no effect" in it for it in notes) == 1
+    inlet = solve(pair({**EVERYTHING, **BARE, **changes, "models.temperatures": "inlet"}))
+    assert not any(f"thermal.{key} has no effect" in it for it in inlet.notes)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"thermal.coolant_temperature": "37 degC", "thermal.cooler_conductance": "3 W/K"},
+        {"thermal.bath_share": 0.21, "thermal.lubrication": "spray-and-dip"},
+        {"thermal.jet_effectiveness": 0.7, "thermal.lubrication": "spray-and-dip"},
+        HOUSED,
+    ],
+)
+def test_keys_with_an_effect_are_not(changes):
+    case = {**EVERYTHING, **BARE, **changes}
+    assert not any("thermal." in it and "has no effect" in it for it in solve(pair(case)).notes)
 
 
 def test_heat_of_sliding_is_shared_where_it_arises():

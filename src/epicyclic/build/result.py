@@ -11,8 +11,8 @@ from typing import Any, TypeVar, cast
 
 import numpy as np
 
-from epicyclic.build.machine import Built
-from epicyclic.build.models import ONLY_WITH, SetCase, oil_share, standing_of
+from epicyclic.build.machine import IN_BATH, Built
+from epicyclic.build.models import ONLY_WITH, SetCase, oil_share, standing_of, with_lubrication
 from epicyclic.case.case import Case, TrainCase
 from epicyclic.case.tables.models import LoadSharing
 from epicyclic.case.tables.operation import SHARE_KEY
@@ -553,6 +553,29 @@ def _set_notes(built: Built, solution: Solution) -> Iterator[str]:
             yield from result.notes
 
 
+_OF_HOUSING = {"height", "length", "air_speed", "emissivity", "fin_factor"}, {"coefficient"}
+"""Keys of [thermal.housing] that iso-14179-1 does not use, and those of no other method."""
+
+
+def _idle_heat(case: Case) -> Iterator[str]:
+    """Keys of [thermal] without effect on a heat network beside the others."""
+    table, housing = case.thermal, case.thermal.housing
+    sets = case.computed_sets if isinstance(case, TrainCase) else [("", case)]
+    wet = {with_lubrication(table, own.lubrication, None).lubrication for _, own in sets}
+    way = f"with thermal.lubrication = {', '.join(sorted(wet))}"
+    idle = {"bulk": "with models.temperatures = network"}
+    idle |= {"bath_share": way} if wet <= {"spray", "submerged"} else {}
+    idle |= {"jet_effectiveness": way} if wet <= {*IN_BATH} else {}
+    if not table.cooler_conductance:
+        idle["coolant_temperature"] = "without cooler_conductance"
+    for key in sorted(table.model_fields_set & idle.keys()):
+        yield f"thermal.{key} has no effect {idle[key]}."
+    if housing is not None:
+        keys = _OF_HOUSING[housing.method != "iso-14179-1"]
+        for key in sorted(housing.model_fields_set & keys):
+            yield f"thermal.housing.{key} has no effect with method = {housing.method}."
+
+
 def _solution_notes(case: Case, settled: Settled) -> Iterator[str]:
     """What is stated to no effect or beyond sense, and what is odd about torques and heat."""
     solution, thermal = settled.solution, case.thermal
@@ -566,9 +589,8 @@ def _solution_notes(case: Case, settled: Settled) -> Iterator[str]:
             f"thermal.cooler_power removes {taken}, and all losses are {given_off}: the cooler "
             "also cools the oil that flows in. Give at most the losses, or cooler_conductance."
         )
-    stated = settled.answer.links and "coolant_temperature" in thermal.model_fields_set
-    if stated and thermal.cooler_conductance == 0:
-        yield Note("thermal.coolant_temperature has no effect without cooler_conductance.")
+    if settled.answer.links:
+        yield from map(Note, _idle_heat(case))
     for value in stated_values(case)[0].values() if getattr(case, "uncertainty", {}) else ():
         if value is not None and value.remark:
             yield f'uncertainty."{value.key}": {value.remark}. Correct the limits or the value.'
