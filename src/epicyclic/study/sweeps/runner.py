@@ -239,8 +239,8 @@ def read_heading(path: Path) -> tuple[str, dict[str, Any]]:
                     return heading.sweep, heading.study
                 strange += 1 + len(line) // _LONG
     except OSError as error:
-        raise _error(path, f"cannot be read: {error.strerror}.") from None
-    raise _error(path, "is no file of a shard, or of an interrupted study.")
+        raise _error(path, f"cannot be read: {error.strerror}.", _NAME_SHARDS) from None
+    raise _error(path, "is no file of a shard, or of an interrupted study.", _NAME_SHARDS)
 
 
 _CHECK = b',"check":"%08x"}'
@@ -265,8 +265,11 @@ def _parsed(kind: TypeAdapter[Any], line: bytes | None) -> Any:
         return None
 
 
-def _error(path: Path, allowed: str) -> InputError:
-    remedy = "Move or delete it, and give the command again."
+_NAME_SHARDS = "Name the files that the shards wrote, as those of s.nc.shard-*."
+_ANEW = "Move or delete it, and give the command again."
+
+
+def _error(path: Path, allowed: str, remedy: str = _ANEW) -> InputError:
     return one_problem("journal", str(path), allowed, remedy, "the sweep")
 
 
