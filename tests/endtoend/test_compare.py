@@ -167,6 +167,7 @@ def test_load_dependent_losses_as_a_rig_forms_them(call, measured):
         (["--plot", "fit.jpg"], "must end in .png"),
         (["--fit", "planet.roughnes"], "planet.roughness"),
         (["--hold-out", "0.5"], "no keys are fitted"),
+        (["--seed", "4", "--hold-out", "speed=2000"], "draws the random share of --hold-out"),
     ],
 )
 def test_bad_options_end_before_anything_is_written(call, measured, tmp_path, arguments, words):

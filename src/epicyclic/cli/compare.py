@@ -145,6 +145,9 @@ def compare(
     if output is not None and not keys:
         allowed = "holds the calibrated case, but no keys are calibrated."
         raise one_problem("-o", str(output), allowed, "Name the keys with --fit.", "the command")
+    if seed and "=" in (hold_out or "="):
+        allowed = "draws the random share of --hold-out, which is not given."
+        raise one_problem("--seed", str(seed), allowed, "Leave it out.", "the command")
     if runner.shard is not None:
         others = {"--relative": relative, "--hold-out": hold_out, "--journal": journal}
         _check_shard(json_file, {"--fit": fit, **others})
