@@ -14,6 +14,7 @@ import listed_trains
 from epicyclic.build.machine import build
 from epicyclic.case.train_tables import ListedGear
 from epicyclic.gears.mesh import closing_number, nearest_places, pin_angle
+from epicyclic.machine.disc import disc_loss
 from listed_trains import BEARING, CARRIER
 from problems import only, problems_of
 
@@ -25,6 +26,32 @@ def compiled():
     """Compilation and imports must not count as time of a check."""
     for kind in KINDS:
         ep.load_case(getattr(listed_trains, kind)())
+
+
+@pytest.mark.parametrize("kind", ["wolfrom", "ravigneaux", "layshaft"])
+def test_gears_of_one_body_meet_the_oil_as_one(kind):
+    """Jets bring all of the oil that flows, and each path of heat has a name of its own."""
+    tables = getattr(listed_trains, kind)()
+    tables |= {"models": {"temperatures": "network"}}
+    tables |= {"thermal": {"oil_flow": "2.3 l/min", "jet_effectiveness": 0.7}}
+    ways = ep.solve(ep.load_case(tables)).heat.ways
+    names = [way.key for way in ways]
+    assert len(names) == len({*names})
+    found = {way.key: way.conductance for way in ways}
+    jets = sum(own for name, own in found.items() if name.endswith("-jet"))
+    assert jets == pytest.approx(0.7 * found["oil-outflow"], rel=1e-9)
+
+
+@pytest.mark.parametrize("kind", ["wolfrom", "ravigneaux", "stepped"])
+def test_all_gears_of_a_planet_drag(kind):
+    """Each alone gives its part of the whole."""
+    built = build(ep.load_case(getattr(listed_trains, kind)()))
+    state, discs = built.state(), built.sets["S"].discs["planets_drag"]
+    whole, _ = disc_loss(discs, state)
+    parts = [disc_loss([disc], state)[0] for disc in discs]
+    assert len({part.watts for part in parts}) == len(parts) > 1
+    assert whole.watts == pytest.approx(sum(part.watts for part in parts), rel=1e-12)
+    assert sum(share for *_, share in whole.brakes) == pytest.approx(1.0, rel=1e-12)
 
 
 def changed(kind, **changes):

@@ -86,7 +86,12 @@ def tables_of(case):
 
 
 CASES = {
-    "talbot-2012": HOUSING | {"thermal.oil_flow": "4 l/min"},
+    "talbot-2012": HOUSING
+    | {
+        "thermal.oil_flow": "4 l/min",
+        "lubrication": {"method": "jet", "oil_flow": "1.7 l/min"},  # what reaches the gears
+        "thermal.conductances.sun-jet.scale": 0.6,
+    },
     "talbot-2012-pair": {
         "thermal.lubrication": "dip",
         "thermal.oil_volume": "1 l",

@@ -219,7 +219,7 @@ def _wet(table: ThermalTable, gear_sets: Sequence[GearSet], to_gears: float | No
     baths = {"dip": dips, "spray-and-dip": dips, "submerged": 1.0}
     # how far the flow reaches the temperature of the gears, what misses them included
     effectiveness = 0.0 if table.lubrication in IN_BATH else table.jet_effectiveness
-    if to_gears is not None and table.oil_flow and not table.jet_shares:
+    if to_gears is not None and table.oil_flow:
         effectiveness *= min(1.0, to_gears / table.oil_flow)
     return Wet(baths.get(table.lubrication, 0.0), effectiveness)
 

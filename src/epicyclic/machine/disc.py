@@ -160,10 +160,11 @@ def disc_loss(
         if disc.jets is not None:
             watts += _jet_loss(disc.jets, speed, state, struck)
             methods[JET_METHOD] = JET_SOURCE
-        drags[disc.body, disc.against] = watts
+        pair = disc.body, disc.against  # of several discs, where a body has several gears
+        drags[pair] = drags.get(pair, 0.0) + watts
         by_model[title] = by_model.get(title, 0.0) + watts
     total = sum(drags.values())
-    brakes = tuple((*pair, own / total) for pair, own in drags.items() if own)
+    brakes = tuple((*it, own / total) for it, own in drags.items() if own)
     several = by_model if total and len(by_model) > 1 else {}
     shares = tuple((title, own / total) for title, own in several.items())
     method, source = "; ".join(methods), "; ".join(methods.values())

@@ -705,7 +705,7 @@ class NetworkModel:
             carried = larger(sum(seen.heat.values()), 0.0) / (own.outlet - own.inlet)
         elif carried is None:
             carried = oil.density * oil.heat_capacity * own.flow
-        shares = self._jet_shares(seen.heat)
+        shares = self.jet_shares(seen.heat)
 
         def wetting(wet: Wet) -> Wetting:
             around, jet = oil if wet.bath else mixture, wet.effectiveness * carried
@@ -743,7 +743,7 @@ class NetworkModel:
         raise_any(problems)
         return {node: value for node, value in known.items() if value is not None}
 
-    def _jet_shares(self, heat: Mapping[str, float]) -> dict[str, float]:
+    def jet_shares(self, heat: Mapping[str, float]) -> dict[str, float]:
         """The oil goes where the heat arises, unless the user says otherwise. Theory (W30)."""
         given = self.settings.jet_shares
         own = {node: heat.get(node, 0.0) for node in self._met_by_jets() if node not in given}

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from epicyclic.arrays import larger
 from epicyclic.contact.temperatures import Solid
-from epicyclic.dataclass import dataclass
+from epicyclic.dataclass import dataclass, replace
 from epicyclic.gears.gear import HOUSING, Gear
 from epicyclic.losses.planet_bearing import RollerBearing
 from epicyclic.machine.convection import SPLASHED_WALL, Fluid, dipped_disc, disc_coefficient
@@ -66,13 +66,19 @@ class OneGear:
 def gear_set_links(own: GearSet, seen: Seen, wetting: Wetting) -> Iterator[Link]:
     """Paths of the heat of a set. Theory (W29), (W30), (W31)."""
     planets = {planet.nodes[0]: planet for planet in own.planets}
+    on: dict[str, list[OneGear]] = {}  # the gears of each node, which oil meets as one
     for one in gears_of(own):
-        planet = planets.get(one.node)
+        on.setdefault(one.node, []).append(one)
+    for node, gears in on.items():
+        planet = planets.get(node)
         reference = own.carrier if planet else HOUSING
-        speed = abs(seen.speeds[one.body] - seen.speeds[reference])
-        yield from _gear_to_oil(one, speed, planet, wetting)
-        if planet is None and one.gear.internal and not speed:
-            yield from _ring_to_housing(own, one, wetting)
+        speed = abs(seen.speeds[gears[0].body] - seen.speeds[reference])
+        yield from _jet(node, wetting)
+        faces = [link for one in gears for link in _gear_to_oil(one, speed, planet, wetting)]
+        if faces:
+            yield replace(faces[0], conductance=sum(link.conductance for link in faces))
+        if planet is None and any(one.gear.internal for one in gears) and not speed:
+            yield from _ring_to_housing(own, gears[0], wetting)
     for planet in own.planets:
         yield from _planet_to_carrier(own, planet, seen, wetting)
     yield from _carrier_to_oil(own, seen, wetting)
@@ -95,7 +101,6 @@ def _gear_to_oil(
     one: OneGear, speed: float, planet: Planet | None, wetting: Wetting
 ) -> Iterator[Link]:
     gear = one.gear
-    yield from _jet(one.node, wetting)
     outer = max(gear.tip_radius, gear.root_radius)
     inner = gear.tip_radius if gear.internal else 0.0
     if planet is not None and planet.bearing is not None:
@@ -136,11 +141,9 @@ def _discs(own: GearSet) -> list[Disc]:
 
 def _ring_to_housing(own: GearSet, one: OneGear, wetting: Wetting) -> Iterator[Link]:
     """A ring gear that stands still is pressed into the housing."""
-    for disc in _discs(own):
-        if disc.body == one.body:
-            area = 2 * math.pi * disc.turning.radius * disc.turning.width
-            key = f"{one.node}-housing"
-            yield Link(key, one.node, HOUSING, wetting.press_fit * area, SEAT, ESTIMATE)
+    outsides = [disc.turning for disc in _discs(own) if disc.body == one.body]
+    area = 2 * math.pi * sum(disc.radius * disc.width for disc in outsides)
+    yield Link(f"{one.node}-housing", one.node, HOUSING, wetting.press_fit * area, SEAT, ESTIMATE)
 
 
 def _planet_to_carrier(

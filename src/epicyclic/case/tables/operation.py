@@ -162,7 +162,7 @@ class ThermalTable(Table):
         le=1,
     )
     jet_shares: dict[str, Number] = option(
-        "Shares of oil_flow that reach a gear, pin or bearing; the rest reaches the others. "
+        "Shares of the oil from jets that reach a gear, pin or bearing; the others get the rest. "
         "Default: in proportion to their heat.",
         {},
     )

@@ -20,7 +20,6 @@ from epicyclic.losses.pocket_tables import FlowTables
 from epicyclic.machine.element import OIL, joined_key
 from epicyclic.machine.heat import AMBIENT, HOTTEST, NetworkModel
 from epicyclic.machine.heat_flow import Course, Curves, Link, Source, Transient
-from epicyclic.machine.heat_paths import INLET
 from epicyclic.machine.machine import Machine
 from epicyclic.machine.solve import Solution, Wanted, solve_machine
 from epicyclic.messages import refused, written
@@ -294,21 +293,14 @@ def warm_up(
 
 def _with_fixed_jets(case: Case) -> Case:
     """The oil meets all parts as it does in the settled state of the case: nozzles do not move."""
+    built = build(case)
+    assert isinstance(built.thermal, NetworkModel)
     try:
-        answer = build(case).solve().answer
+        solution = built.solve().solution
     except ConvergenceError:  # it runs away: the oil goes where the heat arises
         return case
-    jets = {
-        link.hot: link.conductance
-        for link in answer.links
-        if link.cold == INLET and link.target == OIL
-    }
-    whole = sum(jets.values())
-    if not whole:
-        return case
-    return case.updated(
-        {"thermal.jet_shares": {node: share / whole for node, share in jets.items()}}
-    )
+    heat = built.thermal.seen(solution, solution.losses.values()).heat
+    return case.updated({"thermal.jet_shares": built.thermal.jet_shares(heat)})
 
 
 def _knots(low: float, high: float) -> list[float]:
