@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 import epicyclic as ep
+from epicyclic.build import result as build_result
 from epicyclic.machine import solve as machine_solve
 
 
@@ -83,3 +84,22 @@ def test_energy_balances_where_no_direction_agrees_with_itself(monkeypatch):
     assert note.startswith("sun mesh:")
     brought = sum(member.power for member in result.flow.members.values())
     assert brought == pytest.approx(result.total, rel=1e-9)
+
+
+def test_stage_torques_balance_where_teeth_float(monkeypatch):
+    built_and_settled = []
+    heat = build_result._heat
+
+    def spied(case, built, settled):
+        built_and_settled.append((built, settled))
+        return heat(case, built, settled)
+
+    monkeypatch.setattr(build_result, "_heat", spied)
+    ep.solve(ep.load_case(E_AXLE).updated({"models.preset": "talbot-2012"}))
+    built, settled = built_and_settled[-1]
+    solution = settled.solution
+    assert solution.floating
+    taken = machine_solve.stage_torques(built.machine, solution)
+    for body, torque in solution.torques.items():
+        sum_of_parts = sum(own.get(body, 0.0) for own in taken.values())
+        assert sum_of_parts == pytest.approx(torque, rel=1e-9, abs=1e-12), body

@@ -91,11 +91,9 @@ def telling_contacts(case: Case) -> Iterator[None]:
 
         with progress_bar("contacts of the mesh") as progress, contact_progress(progress):
             yield
-    elif sys.stderr.isatty():
+    else:
         with working():  # pockets may take minutes too
             yield
-    else:
-        yield
 
 
 @click.command()

@@ -119,8 +119,9 @@ def _check_use(
         wrong.append(("--set", "applies to a case, not to a map."))
     if points is not None and cycle is None:
         wrong.append(("--points", "requires a cycle."))
-    remedy = "Add it, or leave this out." if wrong and "needs" in wrong[0][1] else "Leave it out."
-    raise_any((Problem(name, "", text, remedy) for name, text in wrong), "the command")
+    other = {False: "Leave it out.", True: "Add it, or leave this out."}
+    said = (Problem(name, "", text, other["needs" in text]) for name, text in wrong)
+    raise_any(said, "the command")
 
 
 def _study(

@@ -40,8 +40,6 @@ def span(gear: Gear, count: int) -> float:
 
     Examples
     --------
-    >>> import math
-    >>> from epicyclic.gears.gear import BasicRack
     >>> rack = BasicRack(1e-3, math.radians(20.0), 0.0)
     >>> gear = Gear("pinion", rack, 20, False, math.pi / 40, 11e-3, 8.75e-3, 10e-3)
     >>> round(1e3 * span(gear, 3), 3)
@@ -114,8 +112,6 @@ def dimension_over_pins(gear: Gear, pin: float) -> float:
 
     Examples
     --------
-    >>> import math
-    >>> from epicyclic.gears.gear import BasicRack
     >>> rack = BasicRack(1e-3, math.radians(20.0), 0.0)
     >>> gear = Gear("pinion", rack, 20, False, math.pi / 40, 11e-3, 8.75e-3, 10e-3)
     >>> round(1e3 * dimension_over_pins(gear, 1.7e-3), 4)

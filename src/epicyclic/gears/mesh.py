@@ -185,8 +185,6 @@ def profile_shift_sum(
 
     Examples
     --------
-    >>> import math
-    >>> from epicyclic.gears.gear import BasicRack
     >>> rack = BasicRack(1.75e-3, math.radians(20.0), 0.0)
     >>> round(profile_shift_sum(rack, 21 + 43, 56.8e-3), 4)
     0.4806
@@ -211,8 +209,6 @@ def closed_center_distance(
 
     Examples
     --------
-    >>> import math
-    >>> from epicyclic.gears.gear import BasicRack
     >>> rack = BasicRack(1.75e-3, math.radians(20.0), 0.0)
     >>> round(1e3 * closed_center_distance(rack, 21 + 43, 0.4380 + 0.0426), 3)
     56.8

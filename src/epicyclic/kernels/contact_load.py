@@ -205,18 +205,9 @@ def newton_step(
 ) -> tuple[FloatArray, float, float, FloatArray]:
     """Newton's step on the loaded segments to the total `force`.
 
-    Each line is solved by itself; a system of the size of the lines joins them.
-
-    Returns
-    -------
-    step : ndarray, shape (lines, segments)
-        [N]
-    approach : float
-        [m]
-    stiffness : float
-        Stiffness of the total force against the approach. [N/m]
-    rise : ndarray, shape (lines, segments)
-        Rise of each force with the total one. [1]
+    Each line is solved by itself; a system of the size of the lines joins them. Returns the step
+    [N], the approach [m], the stiffness of the total force against the approach [N/m], and the rise
+    of each force with the total one [1]; step and rise of shape (lines, segments).
     """
     compliance, coupling = teeth[0], teeth[1]
     lines, segments = loaded.shape
@@ -421,18 +412,10 @@ def solve_contact_loads(
 ) -> tuple[FloatArray, float, float, int, FloatArray]:
     """Forces on all segments of all lines. Theory (E5).
 
-    Returns
-    -------
-    forces : ndarray, shape (lines, segments)
-        [N]
-    approach : float
-        Approach of the gears along the common normal, from where the flanks touch first. [m]
-    stiffness : float
-        Stiffness of the total normal force against the approach. [N/m]
-    iterations : int
-        Newton steps, or -1 without a solution.
-    rise : ndarray, shape (lines, segments)
-        Rise of each force with the total one, before the last step. [1]
+    Returns the forces [N], shape (lines, segments), the approach of the gears along the common
+    normal, from where the flanks touch first [m], the stiffness of the total normal force against
+    the approach [N/m], the Newton steps, or -1 without a solution, and the rise of each force with
+    the total one, before the last step [1], shape (lines, segments).
     """
     length = teeth[3]
     forces, loaded = shared(force, start)

@@ -151,26 +151,15 @@ def over_pressure(
 
 @kernel
 def along_path(
-    path: FloatArray, pressure: FloatArray, ends: FloatArray, crowding: FloatArray,
-    pressures: FloatArray, values: FloatArray,
-) -> FloatArray:  # fmt: skip
-    """A quantity at places on the path of contact under a pressure, shape (n,). Theory (O16).
-
-    Parameters
-    ----------
-    path : ndarray, shape (n,)
-        s, from the pitch point. [m]
-    pressure : ndarray, shape (n,)
-        p_h, held within `pressures`. [Pa]
-    ends : ndarray, shape (2,)
-        Ends of the path on the negative and on the positive side. [m]
-    crowding : ndarray, shape (2,)
-        k of both sides: how much points crowd at the pitch point. [1]
-    pressures : ndarray, shape (2,)
-        Lowest and highest one of the points, which are even in the logarithm. [Pa]
-    values : ndarray, shape (2, m, k)
-        At the points of both sides, from the pitch point outwards, and of the pressure.
-    """
+    path: FloatArray,  # s, from the pitch point, shape (n,). [m]
+    pressure: FloatArray,  # p_h, held within `pressures`, shape (n,). [Pa]
+    ends: FloatArray,  # Ends of the path on the negative and on the positive side. [m]
+    crowding: FloatArray,  # k of both sides: how much points crowd at the pitch point. [1]
+    pressures: FloatArray,  # Lowest and highest one of the points, even in the logarithm. [Pa]
+    # At the points of both sides, from the pitch point outwards, and of the pressure, (2, m, k).
+    values: FloatArray,
+) -> FloatArray:
+    """A quantity at places on the path of contact under a pressure, shape (n,). Theory (O16)."""
     found = np.empty(path.size)
     along, over = np.empty(4), np.empty(4)
     points, levels = values.shape[1:]
@@ -214,12 +203,7 @@ def monotone_cubic(
     values: FloatArray,
     at: FloatArray,
 ) -> tuple[FloatArray, FloatArray]:
-    """Values and slopes at some places; beyond the points their last value, slope zero.
-
-    Returns
-    -------
-    read, slope : ndarray, shape (m, k)
-    """
+    """Values and slopes, (m, k), at m places; beyond the points their last value, slope zero."""
     count, columns = values.shape
     slopes = np.empty_like(values)
     for n in range(count):

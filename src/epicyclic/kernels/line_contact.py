@@ -358,22 +358,15 @@ def two_slopes(
 
 @kernel
 def eyring_means(
-    rate: FloatArray, highest: FloatArray, slope: FloatArray, slope_ratio: float,
-    transition: float, cosines: FloatArray, weights: FloatArray,
-) -> FloatArray:  # fmt: skip
-    """Sum of the weighted arsinh(rate exp(ln mu)), shape (n,). Theory (O4). [1]
-
-    Parameters
-    ----------
-    rate : ndarray, shape (n,)
-        Newtonian stress at ambient viscosity over the Eyring stress. [1]
-    highest, slope : ndarray, shape (n,)
-        Highest pressure [Pa], slope of ln(mu) at ambient pressure [1/Pa].
-    slope_ratio, transition : float
-        For two slopes: high over low [1], pressure where they meet [Pa].
-    cosines, weights : ndarray, shape (k,)
-        Cosines and weights of the quadrature.
-    """
+    rate: FloatArray,  # Newtonian stress at ambient viscosity over the Eyring stress, (n,). [1]
+    highest: FloatArray,  # Highest pressure, shape (n,). [Pa]
+    slope: FloatArray,  # Slope of ln(mu) at ambient pressure, shape (n,). [1/Pa]
+    slope_ratio: float,  # For two slopes: high over low. [1]
+    transition: float,  # For two slopes: the pressure where they meet. [Pa]
+    cosines: FloatArray,  # Cosines of the quadrature, shape (k,).
+    weights: FloatArray,  # Weights of the quadrature, shape (k,).
+) -> FloatArray:
+    """Sum of the weighted arsinh(rate exp(ln mu)), shape (n,). Theory (O4). [1]"""
     total = np.zeros(rate.size)
     for i in range(rate.size):
         for k in range(cosines.size):

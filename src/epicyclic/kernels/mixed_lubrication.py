@@ -115,19 +115,13 @@ def _bounded(
 
 @kernel
 def film_stress(
-    pressure: FloatArray, rate: FloatArray, warm: FloatArray, heating: FloatArray, oil: FloatArray
+    pressure: FloatArray,  # Mean pressure, shape (n,). [Pa]
+    rate: FloatArray,  # Shear rate, shape (n,). [1/s]
+    warm: FloatArray,  # Rise by the friction of asperities, shape (n,). [K]
+    heating: FloatArray,  # Rise per stress of the film, shape (n,). [K/Pa]
+    oil: FloatArray,  # As for `eyring_stress`, shape (8,) or longer.
 ) -> FloatArray:
-    """Stress tau of each film at the temperature T0 + warm + heating tau. Theory (Y7). [Pa]
-
-    Parameters
-    ----------
-    pressure, rate : ndarray, shape (n,)
-        Mean pressure [Pa], shear rate [1/s].
-    warm, heating : ndarray, shape (n,)
-        Rise by the friction of asperities [K]; rise per stress of the film [K/Pa].
-    oil : ndarray, shape (8,) or longer
-        As for `eyring_stress`.
-    """
+    """Stress tau of each film at the temperature T0 + warm + heating tau. Theory (Y7). [Pa]"""
     n, its = len(pressure), oil
     log_rate, cold, falls, temperature = np.empty(n), np.empty(n), np.empty(n), np.empty(n)
     moved, left = np.empty(n), np.empty(n)
@@ -183,24 +177,19 @@ def acting_roughness(grown: Real, one: float, cut1: float, two: float, cut2: flo
 
 @kernel
 def mixed_friction(
-    line_load: FloatArray, radius: FloatArray, rolling: FloatArray, sliding: FloatArray,
-    film: FloatArray, flanks: FloatArray, oil: FloatArray,
-) -> FloatArray:  # fmt: skip
-    """mu = xi mu_b + (1 - xi) tau/p, tau as hot as the film is. Theory (Y8). [1]
-
-    Parameters
-    ----------
-    line_load, radius, rolling, sliding : ndarray, shape (points, n)
-        W' [N/m]; R_eq [m], also of shape (1, n); u_r and u_s [m/s].
-    film : ndarray, shape (points, n) or (points, 0)
-        Thickness; empty for `central_film`. [m]
-    flanks : ndarray, shape (points, 8)
-        E_eq [Pa], effusivities of both bodies [W s^0.5/(m^2 K)], what `acting_roughness` takes of
-        both flanks, and H [1].
-    oil : ndarray, shape (points, 12)
-        As for `eyring_stress`; behind it viscosity [Pa s], thermal load over the square of the
-        speed [s^2/m^2], conductivity [W/(m K)], and the friction mu_b of asperities [1].
-    """
+    line_load: FloatArray,  # W', shape (points, n). [N/m]
+    radius: FloatArray,  # R_eq, shape (points, n) or (1, n). [m]
+    rolling: FloatArray,  # u_r, shape (points, n). [m/s]
+    sliding: FloatArray,  # u_s, shape (points, n). [m/s]
+    film: FloatArray,  # Thickness, shape (points, n); (points, 0) for `central_film`. [m]
+    # E_eq [Pa], effusivities of both bodies [W s^0.5/(m^2 K)], what `acting_roughness` takes of
+    # both flanks, and H [1], shape (points, 8).
+    flanks: FloatArray,
+    # As for `eyring_stress`; behind it viscosity [Pa s], thermal load over the square of the speed
+    # [s^2/m^2], conductivity [W/(m K)], and the friction mu_b of asperities [1], (points, 12).
+    oil: FloatArray,
+) -> FloatArray:
+    """mu = xi mu_b + (1 - xi) tau/p, tau as hot as the film is. Theory (Y8). [1]"""
     friction, n = np.empty_like(line_load), line_load.shape[1]
     share, pressure, rate = np.empty(n), np.empty(n), np.empty(n)
     warm, heating, films = np.empty(n), np.empty(n), np.empty(n)

@@ -58,14 +58,8 @@ def _closest(
 ) -> tuple[float, complex, int]:
     """Point of a flank closest to `point`. Theory (Q2).
 
-    Returns
-    -------
-    distance : float
-        [m]
-    foot : complex
-        [m]
-    after : int
-        Index of the first point of `flank` beyond the foot towards the tip.
+    Returns its distance [m], itself [m], and the index of the first point of `flank` beyond it
+    towards the tip.
     """
     base, base_half_angle, rho_form, rho_tip, outward = gear
     after = int(joints[2])
@@ -131,16 +125,8 @@ def _gap(
 ) -> tuple[float, complex, complex, int, int]:
     """Gap between a flank of a tooth of gear 1 and the flank of gear 2 that it faces.
 
-    Theory (Q1), (Q3).
-
-    Returns
-    -------
-    gap : float
-        [m]
-    foot1, foot2 : complex
-        Closest points. [m]
-    after1, after2 : int
-        As `after` of `_closest`.
+    Returns the gap [m], the closest points of both flanks [m], and of each the index that
+    `_closest` returns. Theory (Q1), (Q3).
     """
     flank1, joints1, gear1, flank2, joints2, gear2 = gears
     centre2, _, _, side, alpha, action, clear_leading, clear_trailing = mesh

@@ -128,12 +128,9 @@ def _face_law(
 ) -> tuple[float, float, float]:
     """What axial face j of pocket i has to do with its neighbours, from `carried` of `_carry`.
 
-    Returns
-    -------
-    loss, head, influence : float
-        Part of its own velocity head that it takes; head that is carried on from and to the
-        neighbours; change of that with their velocities. Without all that, only faces to the
-        surroundings take their velocity head.
+    Returns the part of its own velocity head that it takes, the head that is carried on from and to
+    the neighbours, and the change of that with their velocities. Without all that, only faces to
+    the surroundings take their velocity head.
     """
     if carries:
         loss = 1 - carried[0, j] - carried[0, j + 1]
@@ -371,40 +368,27 @@ def _span(live: Flags) -> tuple[int, int]:
 
 @kernel
 def periodic_network(
-    volume: Floats, live: Flags, openings: Openings, rules: Rules, eased: bool, shift: int,
-    limits: tuple[int, float], history: tuple[Floats, ...], figures: Floats,
-) -> int:  # fmt: skip
+    # At the start of the period and at the end of each of its n steps, shape (n + 1, pockets,
+    # slices). [m^3]
+    volume: Floats,
+    live: Flags,  # Which cells are pockets during each step, shape (n, pockets, slices).
+    openings: Openings,  # With a first axis of n steps.
+    rules: Rules,
+    eased: bool,  # Whether openings beside new pockets have next to no inertia at first.
+    shift: int,  # Pockets by which the numbering moves on from one period to the next.
+    # Most periods, and the change of the boundary work, relative, below which the flow is periodic;
+    # pressures may change by ten times that of their largest value, full shares by that.
+    limits: tuple[int, float],
+    # Receives for each step of the last period pressures and full shares (n, pockets + 2,
+    # slices + 2), velocities in axial faces (n, pockets, slices + 1) and gaps (n, pockets + 1,
+    # slices), the inertias of both, and the drops that axial faces take.
+    history: tuple[Floats, ...],
+    # Receives the change of the work in the last period and the iterations in all, shape (2,).
+    figures: Floats,
+) -> int:
     """Flow through the pockets, mesh period after mesh period until it repeats. Theory (Q18).
 
-    Parameters
-    ----------
-    volume : ndarray, shape (n + 1, pockets, slices)
-        At the start of the period and at the end of each of its n steps. [m^3]
-    live : ndarray of bool, shape (n, pockets, slices)
-        Which cells are pockets during each step.
-    openings : tuple of ndarray
-        As `Openings`, with a first axis of n steps.
-    rules : tuple
-        As `Rules`.
-    eased : bool
-        Whether openings beside new pockets have next to no inertia at first.
-    shift : int
-        Pockets by which the numbering moves on from one period to the next.
-    limits : tuple
-        Most periods, and the change of the boundary work, relative, below which the flow is
-        periodic; pressures may change by ten times that of their largest value, full shares by
-        that.
-    history : tuple of ndarray
-        Receives for each step of the last period pressures and full shares (n, pockets + 2,
-        slices + 2), velocities in axial faces (n, pockets, slices + 1) and gaps (n, pockets + 1,
-        slices), the inertias of both, and the drops that axial faces take.
-    figures : ndarray, shape (2,)
-        Receives the change of the work in the last period and the iterations in all.
-
-    Returns
-    -------
-    int
-        Periods; negative if the flow did not repeat.
+    Returns the periods; negative if the flow did not repeat.
     """
     steps, pockets, slices = live.shape
     q, full = np.zeros((pockets + 2, slices + 2)), np.ones((pockets + 2, slices + 2))

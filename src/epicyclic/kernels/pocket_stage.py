@@ -25,13 +25,10 @@ CHOKE_END = 16.0  # Step and end of the table of throat pressures, in the logari
 
 @kernel
 def mixture(q: float, xi: float) -> Mixture:
-    """The mixture at a pressure. Theory (Q8), (Q9).
+    """The mixture at a pressure: q, rho, slope, enthalpy, swelling. Theory (Q8), (Q9).
 
-    Returns
-    -------
-    q, rho, slope, enthalpy, swelling : float
-        The pressure; the density over rho_m, and its derivative by q; the integral of dp/rho from
-        ambient pressure, over p_a/rho_m; rho_m/rho - 1.
+    The pressure; the density over rho_m, and its derivative by q; the integral of dp/rho from
+    ambient pressure, over p_a/rho_m; rho_m/rho - 1.
     """
     log_p = math.log1p(q)
     swelling = (1 - xi) * math.expm1(-log_p / GAMMA)
@@ -86,12 +83,8 @@ def nozzle(
 ) -> tuple[float, float, float, float, float, float]:
     """Drop of enthalpy from a to b down to the throat, density there, and their derivatives.
 
-    Theory (Q12), (Q13).
-
-    Returns
-    -------
-    drop, drop_a, drop_b, rho, rho_a, rho_b : float
-        Over p_a/rho_m, and over rho_m.
+    Returns drop, drop_a, drop_b over p_a/rho_m, and rho, rho_a, rho_b over rho_m. Theory (Q12),
+    (Q13).
     """
     if choke.size == 0:
         return _mean_density(a, b)

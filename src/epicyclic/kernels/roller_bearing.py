@@ -212,7 +212,11 @@ def minimise(
     trial_hessian = np.empty((4, 4))
     system, step, trial = np.empty((4, 5)), np.empty(4), np.empty(4)
     scale = largest(load)
-    reference = slice_stiffness(width * y_over_l.size) * width * clearance_scale(clearance)
+    reference = (
+        slice_stiffness(width * y_over_l.size)
+        * width
+        * float(clearance_length(clearance) ** LENGTH_EXPONENT)
+    )
     energy = potential(d, load, rollers, stiffness, gradient, hessian)
     relative_shift = NEWTON_SHIFT
     for iteration in range(max_iterations):
@@ -275,12 +279,6 @@ def minimise(
 def clearance_length(clearance: float) -> float:
     """A length of the size of clearances and deflections, at least 1 um. [m]"""
     return max(clearance, SMALLEST_LENGTH)
-
-
-@kernel
-def clearance_scale(clearance: float) -> float:
-    """delta^0.11 at that length."""
-    return float(clearance_length(clearance) ** LENGTH_EXPONENT)
 
 
 @kernel
@@ -347,14 +345,8 @@ def solve_roller_loads(
 ) -> tuple[FloatArray, FloatArray, IntArray]:
     """Load intensity of every slice of every roller, under the load of each of n points, (n, 4).
 
-    Returns
-    -------
-    q : ndarray, shape (n, rows, rollers, slices)
-        Load intensity. [N/m]
-    d : ndarray, shape (n, 4)
-        State vector. [m]
-    iterations : ndarray, shape (n,)
-        Newton steps in all, or -1 without convergence.
+    Returns the load intensity [N/m], shape (n, rows, rollers, slices), the state vector [m],
+    (n, 4), and the Newton steps in all, (n,), or -1 without convergence.
     """
     points, (bearings, rows, slices) = len(load), y_over_l.shape
     q, d = np.zeros((points, rows, psi.size, slices)), np.empty_like(start)

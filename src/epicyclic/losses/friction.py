@@ -177,7 +177,6 @@ def pairing_ratio(
 
     Examples
     --------
-    >>> import numpy as np
     >>> from epicyclic.contact.line_contact import contacts_at
     >>> given = dict(
     ...     slide_to_roll_ratio=0.3, rolling_speed=10.0, radius=0.01, hertz_pressure=1e9,

@@ -60,7 +60,6 @@ def film_drag(
     --------
     A gap of 0.2 mm between radii of 60 and 75 mm, in oil of 30 mPa s, at 1500 rpm:
 
-    >>> import math
     >>> torque, _ = film_drag(0.03, 850.0, (50 * math.pi, 0.0), 0.060, 0.075, 0.2e-3)
     >>> round(torque, 4)
     0.6914

@@ -148,7 +148,6 @@ def disc_coefficient(
     --------
     A gear of 60 mm at 3000 rpm in air:
 
-    >>> from epicyclic.machine.convection import air
     >>> round(disc_coefficient(air(333.15, 101325.0), 314.16, 30e-3), 1)
     38.0
     """

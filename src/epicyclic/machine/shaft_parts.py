@@ -159,7 +159,6 @@ def seal_loss(
     --------
     A shaft of 40 mm at 3000 rpm, in oil of VG 100 at 60 degC:
 
-    >>> import math
     >>> round(seal_loss("iso-14179-2", 0.040, 100 * math.pi, 333.15, 100e-6), 1)
     36.9
     """

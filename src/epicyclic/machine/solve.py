@@ -776,14 +776,15 @@ def _torques(machine: Machine, solution: Solution) -> Iterator[tuple[str, str, f
     given = {
         row.key: 1.0 if row.key in solution.standing else row.efficiency for row in machine.rows
     }
-    efficiencies, _ = effects_of(given, solution.rolling, solution.results.values())
+    powers, braking = solution.rolling, solution.floating
+    efficiencies, _ = effects_of(given, powers, solution.results.values(), braking)
     for row in machine.rows:
         eta, drives = efficiencies[row.key], solution.drives[row.key]
         per_tooth = solution.meshes[row.key] / row.teeth[0]
         for body, coefficient in row.terms(1.0 if drives else eta, eta if drives else 1.0):
             yield row.key.partition(".")[0], body, per_tooth * coefficient
     for stage, result in solution.results.items():
-        _, frictions = effects_of(given, solution.rolling, [result])
+        _, frictions = effects_of(given, powers, [result], braking)
         for friction in frictions:
             one, two = friction.between
             difference = solution.speeds[one] - solution.speeds[two]

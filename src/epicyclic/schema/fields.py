@@ -103,11 +103,6 @@ def is_text(annotation: Any) -> bool:
     return str in members and set(members) <= {str, type(None)}
 
 
-def is_array(annotation: Any) -> bool:
-    """True for keys that hold several values."""
-    return entry_of(annotation) is not None
-
-
 def is_named(metadata: Sequence[Any]) -> bool:
     """True for tables that may also be given by name."""
     return any(isinstance(item, Named) for item in metadata)
@@ -264,7 +259,7 @@ def _to_input(value: Any, quantity: Quantity | None) -> Any:
 def is_continuous(field: tuple[Any, tuple[Any, ...]], quantity: Quantity | None) -> bool:
     """True for keys that hold a number which does not count."""
     annotation = field[0]
-    if is_array(annotation) or annotation is int or table_of(annotation) is not None:
+    if entry_of(annotation) or annotation is int or table_of(annotation) is not None:
         return False
     return quantity is not None or any(kind is float for kind, _ in _leaves(annotation))
 

@@ -24,7 +24,7 @@ from epicyclic.schema.fields import (
     choices_of,
     describe,
     dict_value,
-    is_array,
+    entry_of,
     locate,
     quantity_of,
     table_of,
@@ -344,7 +344,7 @@ def _sound_sections(
     sound: dict[str, Table] = {}
     for name, table in tables_of(kind).items():
         annotation = kind.model_fields[name].annotation
-        if dict_value(annotation) is not None or is_array(annotation):
+        if dict_value(annotation) is not None or entry_of(annotation):
             continue
         if name not in raw:
             default = kind.model_fields[name].default

@@ -134,12 +134,9 @@ class _Writer:
         """True if there is a comment of `key` or of one below it."""
         return any(name == key or name.startswith(f"{key}.") for name in self.about)
 
-    def table(self, key: str, field: FieldInfo) -> list[str]:
-        """A table of the case that is not of the user's names."""
-        return self.table_lines(key, field, self.tables.get(key, {}))
-
-    def table_lines(self, key: str, field: FieldInfo, values: Any) -> list[str]:
-        """The lines of the table at `key`."""
+    def table(self, key: str, field: FieldInfo, values: Any = None) -> list[str]:
+        """The lines of the table at `key`; by default with the values of the case."""
+        values = self.tables.get(key, {}) if values is None else values
         table = table_of(field.annotation)
         assert table is not None
         if not isinstance(values, Mapping):
@@ -300,7 +297,7 @@ class _TrainWriter(_Writer):
         for key, field in fields.items():
             full = f"{place}.{key}"
             if key in values or self.tells_of(full):
-                lines += self.table_lines(full, field, values.get(key, {}))
+                lines += self.table(full, field, values.get(key, {}))
                 if key == "gears" and of_gears is not None:
                     lines += self._listed_gears(full, of_gears, values["gears"])
         return lines
@@ -312,7 +309,7 @@ class _TrainWriter(_Writer):
             line
             for name, gear in gears.items()
             if name not in SharedGears.model_fields
-            for line in self.table_lines(f"{place}.{toml_keys([name])}", one, gear)
+            for line in self.table(f"{place}.{toml_keys([name])}", one, gear)
         ]
 
     def parts(self, kind: str) -> Iterator[str]:

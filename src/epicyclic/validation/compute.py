@@ -122,8 +122,6 @@ def mesh_stiffness_of(mesh: LoadedMesh) -> float:
     return mesh.mean(mesh.secant_stiffness) / mesh.mesh.face_width / 1e9
 
 
-# The published figures computed: one function for each kind of figure.
-#
 # Each takes plain values as `published.toml` has them and returns a number in the unit stated
 # there.
 

@@ -561,8 +561,6 @@ class CompareView(View):
         if self._sheet is None or not self._sheet.update(study, [Section("", "", (*tables,))], ()):
             self._build(study, tables, other)
         self._command.set_content(now.command())
-        sheet = self._sheet
-        assert sheet is not None
         self._place.show(drawings, study)
         self.age()
 

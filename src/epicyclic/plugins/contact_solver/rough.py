@@ -84,7 +84,6 @@ def aided_mean(
 
     Examples
     --------
-    >>> import numpy as np
     >>> fine, coarse = np.array([1.0, 3.0, 2.0]), np.array([1.5, 3.5, 2.5, 4.5, 4.5])
     >>> round(aided_mean(fine, coarse).value, 6)
     2.8

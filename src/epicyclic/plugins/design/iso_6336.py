@@ -21,7 +21,7 @@ import numpy as np
 
 from epicyclic.arrays import FloatArray
 from epicyclic.dataclass import dataclass, replace
-from epicyclic.gears.cutting import RackTool, ShaperTool, Tool, fit_tool
+from epicyclic.gears.cutting import RackTool, Tool, fit_tool
 from epicyclic.gears.gear import Gear, involute
 from epicyclic.gears.mesh import Mesh
 
@@ -163,7 +163,6 @@ def _tool_radius(tool: Tool, depth: float, module: float) -> float:
     radius = tool.tip_radius / module
     if isinstance(tool, RackTool):
         return radius
-    assert isinstance(tool, ShaperTool)
     reach = max(0.0, tool.profile_shift_coefficient + depth - radius)
     return radius + math.pow(reach, 1.95) / (3.156 * math.pow(1.036, tool.teeth))
 

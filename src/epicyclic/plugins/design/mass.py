@@ -97,11 +97,10 @@ def _parts(case: Case) -> Iterator[Part]:
                 room += planets * math.pi * gear.tip_radius**2 * gear.face_width
             circle = pins[body].radius if turning else 0.0
             yield Part(joined_key(name, key), planets if turning else 1, mass, inertia, circle)
-        table_of_carrier = getattr(own, "carrier", None)
-        if table_of_carrier is not None:
-            radius = table_of_carrier.outer_diameter / 2
-            disc, inertia = hollow_disc(radius, 0.0, table_of_carrier.width, 7850.0)
-            solid = max(0.2, 1 - room / (math.pi * radius**2 * table_of_carrier.width))
+        if (carrier := own.carrier) is not None:
+            radius, width = carrier.outer_diameter / 2, carrier.width
+            disc, inertia = hollow_disc(radius, 0.0, width, 7850.0)
+            solid = max(0.2, 1 - room / (math.pi * radius**2 * width))
             yield Part(joined_key(name, CARRIER), 1, solid * disc, solid * inertia)
 
 

@@ -150,9 +150,9 @@ class Found:
         """How many candidates ended how; they sum to all."""
         return {str(k): int(v) for k, v in self.table["fate"].value_counts().items()}
 
-    def case(self, number: int, point: int = -1) -> Case:
-        """The case of a candidate at the operating point, or at a point of the cycle."""
-        return read_case(case_tables(self.task, self.table.loc[number].to_dict(), point))
+    def case(self, number: int) -> Case:
+        """The case of a candidate at the operating point."""
+        return read_case(case_tables(self.task, self.table.loc[number].to_dict()))
 
     def dataset(self) -> xr.Dataset:
         """All candidates over ``design``, with units."""

@@ -516,7 +516,6 @@ class _Rating:
         if duty.speed1 == 0:
             return FlankRating(**dict.fromkeys(FlankRating.__dataclass_fields__, math.nan))
         fluids = self.state.fluids
-        assert fluids is not None
         raised = replace(loads, line_load=loads.line_load * scale)
         stronger = replace(duty, torque1=duty.torque1 * scale)
         contact = contact_under(stronger, raised, fluids.at(key), fluids.oil)

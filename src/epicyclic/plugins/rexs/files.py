@@ -302,8 +302,6 @@ def _appended(parent: etree._Element, name: str, head: dict[str, str]) -> etree.
 
 Content = JsonContent | XmlContent
 
-# REXS files: XML, JSON, or either in a ZIP archive; read with bounds, written whole.
-#
 # Nothing of an archive is unpacked to disk, and nothing that a file names elsewhere is read.
 
 

@@ -62,8 +62,6 @@ def fit(letter: float, text: str, room: float, size: float) -> float:
     return min(size, room / (letter * max(1, len(text))))
 
 
-# The power flow of a train: sets as columns, shafts as lines, arrows as wide as the power.
-#
 # Every length is in inches on a slide of 16 to 9.
 
 SLIDE = (13.33, 7.5)  # Width and height. [inch]

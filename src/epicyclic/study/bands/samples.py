@@ -183,7 +183,6 @@ def sample_summary(samples: FloatArray) -> Summary:
 
     Examples
     --------
-    >>> import numpy as np
     >>> round(sample_summary(np.arange(1000.0)).low, 3)
     24.025
     """

@@ -17,7 +17,7 @@ from epicyclic.case.keys import field_at, known_keys
 from epicyclic.dataclass import dataclass, field, replace
 from epicyclic.errors import InputError, Problem, first_of, raise_any
 from epicyclic.messages import did_you_mean, misspelt, one_line, sentence
-from epicyclic.schema.fields import is_array, is_text, quantity_of
+from epicyclic.schema.fields import entry_of, is_text, quantity_of
 from epicyclic.schema.read import parse_value
 from epicyclic.study.operating import AXES, OPERATING, STATE, STATE_KEY, shaft_power
 from epicyclic.study.sweeps.axes import known_field
@@ -232,7 +232,7 @@ def _name_problem(column: _Column, case: Case) -> Problem | None:
     if known is None:
         remedy = did_you_mean(name, known_keys(case)) or "Remove it, or drop its dots."
         return Problem(shown, "", "is not a key of the case.", remedy)
-    if is_array(known[0]):
+    if entry_of(known[0]):
         return Problem(shown, "", "is a list in the case.", "Compare one table for each list.")
     return None
 

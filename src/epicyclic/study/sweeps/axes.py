@@ -23,7 +23,7 @@ from epicyclic.errors import InputError, Problem, first_of, one_problem, raise_a
 from epicyclic.messages import did_you_mean, one_line, path_of, refused, sentence, value_at, written
 from epicyclic.schema.fields import (
     all_keys,
-    is_array,
+    entry_of,
     is_continuous,
     is_named,
     is_text,
@@ -181,7 +181,7 @@ def field_problem(case: Case, key: str) -> Problem | None:
         remedy = did_you_mean(key, known_keys(case)) or "See 'epicyclic init' for the keys."
         return Problem(key, "", "is not a known key.", remedy)
     annotation, metadata = field
-    if is_array(annotation):
+    if entry_of(annotation):
         allowed = "is a list; a sweep varies keys that hold one value."
         return Problem(key, "", allowed, "Set it in the case, and run a sweep for each list.")
     table = table_of(annotation)

@@ -28,7 +28,7 @@ from epicyclic.files import check_place, whole_file
 from epicyclic.losses.pocket_tables import FlowFamily, FlowTables, make_tables
 from epicyclic.netcdf_file import texts_not_copied
 from epicyclic.result.result import number_fields, origin
-from epicyclic.schema.fields import is_array, quantity_of
+from epicyclic.schema.fields import entry_of, quantity_of
 from epicyclic.schema.read import parse_value, plain, split_key, with_unit_of_key
 from epicyclic.study.load import CaseSource, as_case
 from epicyclic.study.operating import AXES, STATE_KEY, key_of
@@ -565,7 +565,7 @@ def parse_links(options: Sequence[str]) -> dict[str, str]:
 def _values(case: Case, key: str, text: str) -> Iterator[Any]:
     """Values of one option; a `ValueError` has what is wrong, and may have what to do."""
     match, field = _RANGE.fullmatch(text), field_at(case, key)
-    quantity = None if field is None or is_array(field[0]) else quantity_of(*field)
+    quantity = None if field is None or entry_of(field[0]) else quantity_of(*field)
     lacking = ValueError("has no unit", f'Write "{text.strip()} {quantity and quantity.display}".')
     if match is not None:
         start, stop = _NUMBER.fullmatch(match["start"]), _NUMBER.fullmatch(match["stop"])
