@@ -400,3 +400,25 @@ def test_commands_under_another_one_have_their_former_names_too(epicyclic, words
     listed = re.findall(r"^  ([a-z-]+) ", epicyclic("--help").stdout, re.MULTILINE)
     assert words[0] in listed
     assert former not in listed
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (["run", "c.toml", "--json", "c.toml"], "--json = c.toml: is also the file of CASE."),
+        (["run", "c.toml", "--json", "./r.nc", "--save", "r.nc"], "--save = r.nc: is also the"),
+        (["duty", "c.toml", "t.csv", "-o", "t.csv"], "-o = t.csv: is also the file of CYCLE."),
+        (["sweep", "c.toml", "-o", "t.csv", "--points", "t.csv"], "the file of --points."),
+        (["strength", "c.toml", "--json", "l.toml"], "--json = l.toml: is also the file of CASE."),
+    ],
+)
+def test_no_file_is_written_over_one_that_is_read(tmp_path, arguments, told):
+    text = "speed [rpm],torque [N*m]\n1700,31\n"
+    for name in ("c.toml", "t.csv"):
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    (tmp_path / "l.toml").symlink_to("c.toml")
+    done = run_command(arguments, tmp_path)
+    assert done.code == 2
+    assert told in done.errors
+    assert {(tmp_path / it).read_text(encoding="utf-8") for it in ("c.toml", "t.csv")} == {text}
+    assert not (tmp_path / "r.nc").exists()

@@ -11,6 +11,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
+from functools import wraps
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -27,8 +28,10 @@ from epicyclic.errors import (
     EXIT_NO_SOLUTION,
     ConvergenceError,
     InputError,
+    Problem,
     is_interrupt,
     printable,
+    raise_any,
 )
 from epicyclic.registry import load, offered
 
@@ -43,8 +46,46 @@ UNDER: Mapping[tuple[str, ...], str] = {
 """Commands that stand under another one, by both words, and their former names."""
 
 
+_WRITTEN = {"output", "plot", "json_file", "save", "map_file", "rotor", "animate"}
+"""Arguments of commands that name files to write."""
+
+
+def _with_files_apart(call: Callable[..., Any]) -> Callable[..., Any]:
+    """A command that refuses to write over a file that it reads, or twice to one place."""
+
+    @wraps(call)
+    def checked(**values: Any) -> Any:
+        options = click.get_current_context().command.params
+        names = {
+            it.name: it.human_readable_name if it.param_type_name == "argument" else it.opts[0]
+            for it in options
+        }
+        places: dict[str, str] = {}
+        wrong = []
+        for name in sorted(values, key=_WRITTEN.__contains__):  # first what is read
+            value = values[name]
+            for one in value if isinstance(value, tuple) else (value,):
+                if not isinstance(one, str | Path) or str(one) == "-":
+                    continue
+                if name not in _WRITTEN and not os.path.isfile(one):  # noqa: PTH113 - any text
+                    continue
+                other = places.setdefault(os.path.realpath(one), name)
+                if other != name:
+                    allowed = f"is also the file of {names[other]}."
+                    wrong.append(Problem(names[name], str(one), allowed, "Name another one."))
+        raise_any(wrong, "the command")
+        return call(**values)
+
+    return checked
+
+
 class _Commands(click.Group):
     """The commands of this package, and those of plug-ins, which are imported when called."""
+
+    def add_command(self, cmd: click.Command, name: str | None = None) -> None:
+        if cmd.callback is not None:
+            cmd.callback = _with_files_apart(cmd.callback)
+        super().add_command(cmd, name)
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         return sorted({*self.commands, *offered("commands")} - {*UNDER.values()})
@@ -59,8 +100,8 @@ class _Commands(click.Group):
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         if cmd_name in self.commands or cmd_name not in offered("commands"):
             return super().get_command(ctx, cmd_name)
-        command: click.Command = load("commands", cmd_name)
-        return command
+        self.add_command(load("commands", cmd_name), cmd_name)
+        return self.commands[cmd_name]
 
     def invoke(self, ctx: click.Context) -> Any:
         try:
