@@ -158,6 +158,37 @@ def test_a_size_that_is_not_that_of_the_designation_is_named():
     assert [it.allowed for it in found] == ["is 40 mm for 6208.", "is 80 mm for 6208."]
 
 
+@pytest.mark.parametrize(
+    ("changes", "key", "allowed"),
+    [
+        ({"planet_bearing.designation": "22220"}, "planet_bearing.pin_diameter", "about 119"),
+        ({"planet_bearing.designation": "NU 2205"}, "planet_bearing.roller_diameter", "about 7.4"),
+        (
+            {"thrust_bearing": {"designation": "51112", "mean_diameter": "300 mm"}},
+            "thrust_bearing.mean_diameter",
+            "is 72.5 mm for",
+        ),
+        (
+            {"planet_bearing.designation": "NKI 17/16", "planet_bearing.type": "spherical"},
+            "planet_bearing.designation",
+            "is that of a needle bearing, and type is spherical.",
+        ),
+    ],
+)
+def test_so_is_one_of_a_planet_or_thrust_bearing(changes, key, allowed):
+    problem = problems_of(ep.load_case("talbot-2012").updated, changes)[0]
+    assert problem.key == key
+    assert allowed in problem.allowed
+
+
+def test_a_width_may_be_that_of_one_ring():
+    front = "bearings.motor_front"
+    case = ep.load_case("train-eaxle").updated({f"{front}.designation": "6207"})
+    assert case.updated({f"{front}.width": "16 mm"}).bearings["motor_front"].width == 16e-3
+    problem = only(problems_of(case.updated, {f"{front}.width": "61 mm"}))
+    assert (problem.key, problem.allowed) == (f"{front}.width", "is about 17 mm for 6207.")
+
+
 # --- planets --------------------------------------------------------------------------------------
 
 TALBOT = "talbot-2012"
@@ -182,9 +213,10 @@ def test_planet_bearing_by_designation():
 
 
 def test_spherical_planet_bearing_aligns_itself():
-    keys = {"designation": "NU 1005", "rollers_per_row": 11, "rows": 2}
+    keys = _planets(designation="NU 1005").inputs()["planet_bearing"]
+    keys |= {"designation": None, "rollers_per_row": 11, "rows": 2}
     cylindrical, spherical = (
-        ep.solve(_planets(**keys, type=kind, palmgren_coefficient=0.0004)
+        ep.solve(_planets(**keys | {"type": kind, "palmgren_coefficient": 0.0004})
                  .updated({
                      "models.bearing": "palmgren", "gears.helix_angle": "11 deg",
                      "planet.mass": "0 kg",  # unloaded rollers, which are others, lose nothing
@@ -203,7 +235,7 @@ def test_spherical_planet_bearing_aligns_itself():
     [
         ({"designation": "6205"}, {}, "planet_bearing.designation"),
         ({"designation": "NU 1099"}, {}, "planet_bearing.designation"),
-        ({"designation": "NU 1005", "type": "spherical"}, {"models.bearing": "mixed-ehl"},
+        ({"designation": "22205", "pin_diameter": "27 mm"}, {"models.bearing": "mixed-ehl"},
          "models.bearing"),
     ],
 )  # fmt: skip

@@ -98,7 +98,13 @@ def case_notes(
     """What a user must know about a set: its oil, its load, its flows, its planets."""
     before, behind = _notes_of_tables(case)
     yield from before
-    figures = {name: found.figures[name] for name in found.figures if _remarkable(found, name)}
+    figures = {
+        name: found.figures[name]
+        for name in found.figures
+        if (own := found.extremes.get(name)) is None
+        or own.pressure > GEAR_PRESSURE
+        or own.share < LEAST_CONTACT
+    }
     for name, mesh in figures.items():
         if isinstance(mesh, MeshFigures) and mesh.contact_share < LEAST_CONTACT:
             yield (
@@ -118,12 +124,6 @@ def case_notes(
                 f"{case.gearing.key(name)}.rim_thickness is not given, so the drag of the turning "
                 f"ring is computed for a rim of {DEFAULT_RIM_THICKNESS:g} normal modules."
             )
-
-
-def _remarkable(found: GearSetResult, name: str) -> bool:
-    """Whether the figures of a contact are worth reading for notes."""
-    own = found.extremes.get(name)
-    return own is None or own.pressure > GEAR_PRESSURE or own.share < LEAST_CONTACT
 
 
 @lru_cache(maxsize=16)

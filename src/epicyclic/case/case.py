@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import cmath
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from functools import cached_property, lru_cache
 from html import escape
@@ -255,13 +255,8 @@ class CaseTable(Table):
                 kept = before._gearings[""], before._found  # gears that were found and checked
         validation, told, gearing = with_sizes(valid, tables, kept)
         folder = Path(source).parent
-        known = {problem.key for problem in problems}
         crossed = cross_check(validation.sections, tables, folder, gearing, kept and fresh)
-        found = [
-            *problems,
-            *(problem for problem in validation.problems if problem.key not in known),
-            *(as_given(problem, tables) for problem in crossed),
-        ]
+        found = _all_of(problems, validation, crossed, tables)
         if validation.case is not None and getattr(validation.case, "seals", None):
             validation.case._source = source
             found += _part_problems(validation.case, {name: name for name in _SHAFTS}, {})
@@ -428,6 +423,15 @@ def told_oil(raw: Mapping[str, Any]) -> Iterator[Found]:
         yield Found("lubricant.oil", *told)
 
 
+def _all_of(
+    problems: Sequence[Problem], checked: Validation[Any], crossed: Iterable[Problem], tables: Any
+) -> list[Problem]:
+    """Problems found before, those of other keys, and those of keys against each other."""
+    known = {problem.key for problem in problems}
+    own = (problem for problem in checked.problems if problem.key not in known)
+    return [*problems, *own, *(as_given(problem, tables) for problem in crossed)]
+
+
 def as_given(problem: Problem, tables: dict[str, Any]) -> Problem:
     """The problem with the values of its keys as the user wrote them."""
     values = [value_at(tables, path_of(key)) for key in problem.key.split(", ")]
@@ -589,15 +593,10 @@ class TrainCase(_TrainHead):
             raise one_problem("sets", f"{len(named)} sets", allowed, remedy, source)
         sound = {} if before is None else before._unchanged(tables)
         whole = validate(_TrainHead, {k: v for k, v in tables.items() if k != "sets"}, sound, named)
-        known = {problem.key for problem in problems}
         own_tables = {k: v for k, v in whole.sections.items() if k != "operation"}
         # whether the sets have a bearing is checked with them
         crossed = cross_check(own_tables, {*tables, "planet_bearing"}, folder)
-        found = [
-            *problems,
-            *(problem for problem in whole.problems if problem.key not in known),
-            *(as_given(problem, tables) for problem in crossed),
-        ]
+        found = _all_of(problems, whole, crossed, tables)
         if not named:
             shown, allowed = "" if given is None else written(given), "must hold at least one set."
             remedy = "Add [sets.NAME] and its gears."

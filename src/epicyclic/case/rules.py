@@ -102,6 +102,11 @@ def cross_check(
     if isinstance(sharing, LoadSharing) and toothed and (fresh is None or "load_sharing" in fresh):
         # tooth numbers are enough, whether the gears fit or not
         yield from _check_load_sharing(sharing, gearing or expand({"gears": None, **sections})[0])
+    for kind in ("planet", "thrust"):
+        if getattr(bearing := sections.get(f"{kind}_bearing"), "designation", None):
+            from epicyclic.losses.designations import unlike  # cases without one need it not
+
+            yield from unlike(kind, bearing, f"{kind}_bearing.")
     for check, needed in _CHECKS:
         if all(name in sections for name in needed):
             yield from check(*(sections[name] for name in needed))
@@ -163,7 +168,10 @@ def check_listed_bearings(table: ListedSet, gearing: Gearing) -> Iterator[Proble
     """Problems of the bearings that a listed set has for each kind of planets."""
     own = table.planet_bearings
     for name, bearing in own.items():
+        from epicyclic.losses.designations import unlike  # sets without any need it not
+
         yield from check_rollers(bearing, f"planet_bearings.{name}")
+        yield from unlike("planet", bearing, f"planet_bearings.{name}.")
         yield from check_cage(bearing, table.models)
     for body in gearing.planets:
         if body in own:

@@ -11,8 +11,9 @@ from typing import Any
 import numpy as np
 
 from epicyclic.dataclass import dataclass, replace
+from epicyclic.errors import Problem
 from epicyclic.library import bearing_tables
-from epicyclic.messages import did_you_mean
+from epicyclic.messages import did_you_mean, millimetres
 
 RATING_BAND = 0.3
 """Relative deviation of estimated load ratings from catalogues, of the tests' sample. [1]"""
@@ -305,3 +306,26 @@ KEYS: Mapping[str, Callable[[Mapping[str, Any]], dict[str, Any]]] = {
     "thrust": _thrust_keys,
 }
 """The keys that a designation gives."""
+_SIZES: Mapping[str, Mapping[str, float]] = {
+    "shaft": {"bore": 0.01, "outside_diameter": 0.01, "width": 0.15},  # rings differ in width
+    "planet": {"pin_diameter": 0.25, "roller_diameter": 0.25},  # estimates here
+    "thrust": {"mean_diameter": 0.01},
+}
+"""By how much sizes of each kind of table may differ from those of its designation. [1]"""
+
+
+def unlike(kind: str, table: Any, at: str = "") -> Iterator[Problem]:
+    """Sizes of the table at a key that are not those of its designation."""
+    if not table.designation:
+        return
+    planned = KEYS[kind]({"designation": table.designation})
+    if (own := planned.get("type", "")) != getattr(table, "type", own):
+        reason = f"is that of a {own} bearing, and type is {table.type}."
+        yield Problem(f"{at}designation", table.designation, reason, "Delete one of them.")
+        return
+    for key, share in _SIZES[kind].items():
+        size, usual = getattr(table, key), float(planned[key].removesuffix(" mm")) / 1e3
+        if size is not None and abs(size - usual) > share * usual:
+            about = "" if share == 0.01 else "about "
+            reason = f"is {about}{millimetres(usual)} for {table.designation}."
+            yield Problem(at + key, millimetres(size), reason, "Delete one of them.")

@@ -278,7 +278,6 @@ _OF_OTHERS = {"cylindrical": 3, "thrust-roller": 3, "deep-groove": 2, "thrust-ba
 # Diameter of rolling elements over half of D - d: below that of any, and the least where it is not
 # stated; needles have 0.2 to 0.4, others 0.5 to 0.75 (estimates by catalogues, `ELEMENTS`). [1]
 _FINEST, _SLIMMEST = 0.1, 0.2
-_ROUNDED = 0.01  # Of a size that the designation states too. [1]
 _THINNEST, _THICKEST = 1.03, 6.0  # D over d: thin sections have 1.04, a 633 4.3 (catalogues). [1]
 
 
@@ -397,19 +396,13 @@ class ShaftBearingTable(ElementTable):
 
     def problems(self) -> Iterator[Problem]:
         # cases without bearings need it not
-        from epicyclic.losses.designations import designated_or_any
+        from epicyclic.losses.designations import unlike
         from epicyclic.losses.shaft_bearing import TYPE_CONSTANTS, bearing_types
 
         kind, model = self.type, self.model
-        if self.designation and (own := designated_or_any(self.designation)).type != kind:
-            reason = f"is that of a {own.type} bearing, and type is {kind}."
-            yield Problem("designation", written(self.designation), reason, "Delete one of them.")
+        yield from (differing := [*unlike("shaft", self)])
+        if any(it.key == "designation" for it in differing):  # other sizes belong to its type
             return
-        for key in ("bore", "outside_diameter") if self.designation else ():
-            size, planned = getattr(self, key), getattr(own, key)
-            if abs(size - planned) > _ROUNDED * planned:
-                reason = f"is {millimetres(planned)} for {self.designation}."
-                yield Problem(key, millimetres(size), reason, "Delete one of them.")
         if self.bore >= self.outside_diameter:
             reason = f"must be less than outside_diameter, {millimetres(self.outside_diameter)}."
             yield Problem("bore", millimetres(self.bore), reason, "Correct one of the two.")
