@@ -638,6 +638,12 @@ def test_pair_in_a_case_induces_thrust_and_states_its_arrangement(pair_case):
         ("middle_rear.palmgren_coefficient", 0.0007, ""),
         ("middle_front.viscous_factor", 2.3, "the model skf-2018 does not use viscous_factor."),
         ("middle_front.oil_level", "3 mm", ""),
+        ("middle_front.drag_variable", 0.0007, "the model skf-2018 does not use drag_variable."),
+        (
+            "output_front.flange_coefficient",
+            0.0031,
+            "the model houpert does not use flange_coefficient.",
+        ),
     ],
 )
 def test_keys_that_the_model_of_a_bearing_does_not_use_are_told(key, value, told):

@@ -67,14 +67,18 @@ def _bearing(
     if table.radial_force is not None or table.axial_force is not None:
         force = BearingLoad(radial=table.radial_force or 0.0, axial=table.axial_force or 0.0)
     model = _bearing_model(table, oil, folder)
-    foreign = _OF_PALMGREN if model.name not in ("palmgren", "harris") else _OF_SKF
+    idle = {*(_OF_SKF if model.name in ("palmgren", "harris") else _OF_PALMGREN)}
+    idle |= {"palmgren_coefficient"} if model.name == "harris" else set()
+    idle |= {"sliding_friction"} if model.name in ("houpert", "zhou-hoeprich") else set()
+    idle |= {"flange_coefficient"} if table.type != "cylindrical" else set()
+    idle |= {"drag_variable"} if not table.oil_level else set()
     return ShaftBearing(
         key=name,
         between=bodies,
         bearing=catalogue_bearing(table),
         model=model,
         force=force,
-        idle=tuple(key for key in foreign if key in table.model_fields_set),
+        idle=tuple(sorted(idle & table.model_fields_set)),
         minimum_load_factor=table.minimum_load_factor,
         reference_speed=table.reference_speed,
         limiting_speed=table.limiting_speed,
@@ -152,7 +156,8 @@ def _bearing_model(table: ShaftBearingTable, oil: Oil, folder: Path) -> BearingM
 
 def _film_model(table: ShaftBearingTable, oil: Oil) -> BearingModel | None:
     """By the films in the contacts; None where f0 or f1 is stated, or a roller's length unknown."""
-    stated = table.palmgren_coefficient is not None or table.flange_coefficient is not None
+    stated = table.palmgren_coefficient is not None
+    stated |= table.type == "cylindrical" and table.flange_coefficient is not None
     chosen = table.model in ("zhou-hoeprich", "houpert")
     if not (chosen or table.model == "auto"):
         return None
