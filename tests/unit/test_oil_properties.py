@@ -239,3 +239,24 @@ def test_keys_without_effect_are_told():
     assert not any("has no effect" in note for note in ep.solve(used).notes)
     usual = case.updated({"models.constant_friction": 0.04})
     assert words not in ep.solve(usual).notes
+
+
+@pytest.mark.parametrize(
+    ("changes", "idle"),
+    [
+        ({"models.hurst_exponent": 0.61}, "models.hurst_exponent"),
+        ({"models.running_in": "as-made"}, "models.running_in"),
+        ({"models.boundary_friction": 0.073}, "models.boundary_friction"),
+        ({"contact_solver.seed": 71}, "[contact_solver]"),
+        (
+            {"friction_table": {"slide_to_roll_ratio": [0, 1.3], "friction": [0.01, 0.04]}},
+            "[friction_table]",
+        ),
+    ],
+)
+def test_keys_of_another_friction_model_are_told(changes, idle):
+    case = ep.load_case("talbot-2012-pair").updated(
+        {"losses.mesh_pocketing.include": False, "models.friction": "schlenk", **changes}
+    )
+    found = [note for note in ep.solve(case).notes if "has no effect" in note]
+    assert found == [f"{idle} has no effect with models.friction = schlenk."]

@@ -153,6 +153,11 @@ def _notes_of_tables(case: SetCase) -> tuple[tuple[str, ...], tuple[str, ...]]:
         changed = getattr(case.models, key) != type(case.models).model_fields[key].default
         if changed and not any(word in name for word in words for name in chosen):
             behind.append(f"models.{key} has no effect with models.{roles[0]} = {chosen[0]}.")
+    friction = case.chosen["friction"]
+    beside = ["friction_table"] if case.friction_table and friction != "table" else []
+    beside += ["contact_solver"] if case.contact_solver.model_fields_set else []
+    if beside and friction != "ehl-direct":
+        behind.append(f"[{beside[0]}] has no effect with models.friction = {friction}.")
     return tuple(before), tuple(map(Note, behind))
 
 
