@@ -727,6 +727,8 @@ def test_preload_in_a_case(pair_case):
         ({"bearings.motor_rear.arrangement": "O"}, "motor_rear.arrangement"),
         ({"bearings.middle_rear.arrangement": "O", "bearings.middle_front.arrangement": "X"},
          "middle_front.arrangement"),
+        ({"bearings.middle_rear.preload": "2 kN",
+          "bearings.middle_front.preload_displacement": "7 um"}, "middle_front.preload"),
         ({"bearings.middle_rear.arrangement": "O", "bearings.middle_rear.axial_sense": "positive"},
          "middle_rear.arrangement"),
         ({"bearings.middle_rear.type": "angular-contact", "bearings.middle_rear.designation": None,

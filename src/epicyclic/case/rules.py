@@ -547,10 +547,10 @@ def _of_bearings(shaft: str, own: dict[str, ShaftBearingTable]) -> Iterator[Prob
             if table.is_angular and getattr(table, key) is not None and not pair:
                 allowed = f"needs two tapered or angular contact bearings on {shaft}."
                 yield Problem(f"bearings.{name}.{key}", "", allowed, "Delete it.")
-    for key in ("arrangement", "preload", "preload_displacement"):
-        if len({getattr(table, key) for table in own.values()} - {None}) > 1:
-            allowed = f"differs between the bearings of {shaft}."
-            yield Problem(f"bearings.{next(iter(own))}.{key}", "", allowed, "Give it once.")
+    for keys in (("arrangement",), ("preload", "preload_displacement")):
+        if len({getattr(table, key) for table in own.values() for key in keys} - {None}) > 1:
+            allowed = f"is given in two ways for the bearings of {shaft}."
+            yield Problem(f"bearings.{next(iter(own))}.{keys[0]}", "", allowed, "Give it once.")
     nearest = min(table.bore for table in own.values()) / _NARROWEST
     if len(own) == 2 and len(places) == 2 and abs(places[0] - places[1]) < nearest:
         key = f"bearings.{next(iter(own))}.position"
