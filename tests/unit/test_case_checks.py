@@ -203,6 +203,25 @@ def test_a_small_change_has_its_one_problem(case):
     assert words in problem.allowed
 
 
+@pytest.mark.parametrize(
+    ("name", "changes", "missing"),
+    [
+        (TALBOT, {"gears.center_distance": "92.0 mm", "ring.teeth": 152}, "center_distance ="),
+        (
+            "train-eaxle",
+            {"sets.planets.ring.teeth": 95, "sets.planets.sun.profile_shift_coefficient": 0.5},
+            "planet.profile_shift_coefficient =",
+        ),
+    ],
+)
+def test_a_remedy_for_thick_teeth_leaves_out_what_an_unsound_gear_decides(name, changes, missing):
+    first, second = problems_of_changes(name, changes)
+    assert "negative backlash" in first.allowed
+    assert "Zero backlash needs" in first.remedy
+    assert missing not in first.remedy
+    assert "ring" in second.key + second.allowed
+
+
 def test_values_are_the_ones_of_the_file():
     (problem,) = problems_of_changes(TALBOT, {"gears.center_distance": "3.62 in"})
     assert problem.key == "sun.tooth_thickness, planet.tooth_thickness"

@@ -173,6 +173,7 @@ def test_a_line_that_is_not_toml_is_shown(write):
     [
         ("torque = 1000 N*m", 'Put the value in quotes: torque = "1000 N*m".'),
         ("torque = 1000 N*m   # on the sun", 'Put the value in quotes: torque = "1000 N*m".'),
+        ("torque = “1000 N*m”", 'Put the value in quotes: torque = "1000 N*m".'),
         ('torque = "1000 N*m', 'Put the value in quotes: torque = "1000 N*m".'),
         ("torque =", "Give a value."),
     ],

@@ -66,6 +66,17 @@ def test_problems_of_an_oil_have_their_exact_places():
             "point[0].value",
             "out of range",
         ),
+        (
+            {
+                "law": "roelands",
+                "point": [
+                    {"temperature": "40 degC", "value": "18 1/GPa"},
+                    {"temperature": "40 degC", "value": "17 1/GPa"},
+                ],
+            },
+            "point[1].temperature",
+            "repeats the temperature pressure_viscosity.point[0]",
+        ),
     ],
 )
 def test_problems_of_a_law(law, key, words):
@@ -100,6 +111,15 @@ def test_data_of_an_oil_that_cannot_be():
     assert "must fall with rising temperature" in falls.allowed
     assert "29.77" in falls.value
     assert all(problem.remedy for problem in found.values())
+
+
+def test_viscosities_at_almost_the_same_temperature_tell_no_slope():
+    tables = read_case("talbot-2012").inputs()
+    points = tables["lubricant"]["oil"]["kinematic_viscosity"]
+    points[1]["temperature"] = "40.001 degC"
+    problem = only(problems_of(read_case, tables))
+    assert problem.key == "lubricant.oil.kinematic_viscosity[1].value"
+    assert "as that of an oil does" in problem.allowed
 
 
 @pytest.mark.parametrize(

@@ -227,6 +227,17 @@ def test_a_viscosity_of_no_lubricant_is_told():
         oil = {"iso_vg": 220, "kind": "mineral", "viscosity_100": at_100}
         notes = ep.solve(base.updated({"lubricant.oil": oil})).notes
         assert any(words in note for note in notes) == is_told
+    table = library.oil_table("iso-vg-100-mineral")
+    values = ("46 mm^2/s", "45 mm^2/s", "7.8 mm^2/s")
+    points = zip(("40 degC", "70 degC", "100 degC"), values, strict=True)
+    table["kinematic_viscosity"] = [{"temperature": at, "value": value} for at, value in points]
+    table["density"] = [
+        {"temperature": "15 degC", "value": "881 kg/m^3"},
+        {"temperature": "60 degC", "value": "853 kg/m^3"},
+    ]
+    notes = ep.solve(base.updated({"lubricant.oil": table})).notes
+    assert any(words in note for note in notes)
+    assert any("density_slope of" in note for note in notes)
 
 
 def test_keys_without_effect_are_told():

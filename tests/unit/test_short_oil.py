@@ -10,6 +10,11 @@ from epicyclic.contact.fitted_models import builtin_model
 from epicyclic.oil.oil import oil_state
 from problems import only, problems_of
 
+VG_46 = [
+    {"temperature": "40 degC", "value": "46 mm^2/s"},
+    {"temperature": "100 degC", "value": "7.8 mm^2/s"},
+]
+
 
 def with_oil(oil):
     return SET | {"lubricant": {"oil": oil}}
@@ -57,6 +62,13 @@ def test_what_is_stated_takes_the_place_of_what_is_typical():
     assert own.lubricant.oil.kinematic_viscosity[1].value == pytest.approx(7.3e-6)
 
 
+def test_points_of_viscosity_beside_a_density_at_15_degrees():
+    oil = {"kind": "ester", "density_15": "921 kg/m^3", "kinematic_viscosity": VG_46}
+    found = load_case(with_oil(oil)).lubricant.oil
+    assert found.kinematic_viscosity[1].value == pytest.approx(7.8e-6)
+    assert found.density[0].value == pytest.approx(921)
+
+
 @pytest.mark.parametrize(
     ("oil", "key", "words"),
     [
@@ -66,6 +78,25 @@ def test_what_is_stated_takes_the_place_of_what_is_typical():
         ({"viscosity_100": "9 mm^2/s", "kind": "pag"}, "lubricant.oil", "at 40 °C"),
         ({"iso_vg": 46, "viscosity_40": "40 mm^2/s", "kind": "pao"}, "lubricant.oil", "the same"),
         ({"iso_vg": 46, "viscosity_100": "9 mm^2/s"}, "lubricant.oil.kind", "is missing"),
+        ({"iso_vg": 220}, "lubricant.oil.kind", "is missing"),
+        ({"iso_vg": 150, "kind": "minerals"}, "lubricant.oil.kind", '"mineral"'),
+        (
+            {"kind": "pao", "iso_vg": 100, "kinematic_viscosity": VG_46},
+            "lubricant.oil",
+            "twice: iso_vg and kinematic_viscosity",
+        ),
+        (
+            {
+                "kind": "pao",
+                "viscosity_40": "99 mm^2/s",
+                "viscosity_100": "11 mm^2/s",
+                "density_15": "861 kg/m^3",
+                "kinematic_viscosity": VG_46,
+                "density": [{"temperature": "20 degC", "value": "870 kg/m^3"}],
+            },
+            "lubricant.oil",
+            "viscosity_100 and kinematic_viscosity, density_15 and density",
+        ),
         (
             {"iso_vg": 46, "viscosity_100": "9", "kind": "pag"},
             "lubricant.oil.kinematic_viscosity[1].value",

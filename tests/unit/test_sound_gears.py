@@ -147,6 +147,14 @@ def test_tips_collide_where_the_tooth_numbers_are_too_near():
     assert problems_of(read_case, pair(60, 66, internal=True, addendum_coefficient=0.6)) == ()
 
 
+def test_tips_of_a_pinion_beyond_its_ring_all_around_collide():
+    tables = pair(32, 33, 0.0, 0.107, module=1.25, beta=20, internal=True)
+    tables["gears"]["center_distance"] = "0.665 mm"
+    tables["pinion"]["profile_shift_coefficient"] = None
+    problems = problems_of(read_case, tables)
+    assert any("collide beside the mesh" in problem.allowed for problem in problems)
+
+
 def test_undercut_takes_the_involute_that_a_large_mate_needs():
     """Below 17 teeth a rack of full depth undercuts; with profile shift it does not."""
     (problem,) = problems_of(read_case, pair(12, 100))

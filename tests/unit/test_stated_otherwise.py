@@ -15,6 +15,8 @@ from problems import only, problems_of
         ("Rq 0.35 um", 0.35e-6),
         ("Ra 0.4 um", 0.4e-6 / math.sqrt(2 / math.pi)),
         ("Rz 3.1um", 3.1e-6 / 6 / math.sqrt(2 / math.pi)),
+        ("ra0.32 um", 0.32e-6 / math.sqrt(2 / math.pi)),
+        ("RZ = 2.9 um", 2.9e-6 / 6 / math.sqrt(2 / math.pi)),
     ],
 )
 def test_roughness_by_its_parameter(text, rq):
@@ -34,6 +36,15 @@ def test_the_conversion_is_shown_with_its_band():
 @pytest.mark.parametrize("text", ["Ra", "Rz 3", "Rt 3 um", "Ra 3 N", "Rz 900 um", "Ra -1 um"])
 def test_roughness_that_cannot_be_read(text):
     assert only(problems_of(load_case, changed(sun={"roughness": text}))).key == "sun.roughness"
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [("Ra0.4", 'Write "Ra 0.4 um".'), ("Rz 3", 'Write "Rz 3 um".'), ("Ra 90 um", "to 79 um")],
+)
+def test_remedies_for_roughness_keep_its_parameter(text, words):
+    tables = changed(sun={"roughness": text})
+    assert words in only(problems_of(load_case, tables)).remedy
 
 
 @pytest.mark.parametrize(

@@ -169,6 +169,25 @@ def test_a_stated_backlash_contains_the_allowances():
             "pinion.tooth_thickness_allowance",
             "at least 2",
         ),
+        (
+            {X: 0.1, "tooth_thickness_allowance": ["70 um", "100 um"]},
+            "pinion.tooth_thickness_allowance",
+            "none of them positive",
+        ),
+        (
+            {X: 0.1, "tooth_thickness_allowance": ["-110 um", "-80 um"]},
+            "pinion.tooth_thickness_allowance",
+            "the upper, then the lower",
+        ),
+        (
+            {
+                "dimension_over_pins": "58.7 mm",
+                "measuring_pin_diameter": "2.57 mm",
+                "tooth_thickness_fit": "30h",
+            },
+            "pinion.dimension_over_pins",
+            "do not touch the flanks",
+        ),
     ],
 )
 def test_measures_that_cannot_be(stated, key, words):

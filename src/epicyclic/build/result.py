@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import replace
 from functools import cached_property, lru_cache, partial
-from itertools import chain
+from itertools import chain, pairwise
 from typing import Any, TypeVar, cast
 
 import numpy as np
@@ -38,7 +38,7 @@ from epicyclic.machine.planets import SHARING_METHODS, BearingFigures
 from epicyclic.machine.pocket_flow import oil_in_mesh
 from epicyclic.machine.shaft_parts import ShaftBearing
 from epicyclic.machine.solve import Solution, stage_torques
-from epicyclic.oil.oil import oil_state
+from epicyclic.oil.oil import d341_slope
 from epicyclic.result.result import (
     HeatBalance,
     HeatPath,
@@ -83,7 +83,6 @@ BEARING_PRESSURE = 4.0e9
 """Pressure of a roller on its race at the static load rating of ISO 76 (general knowledge). [Pa]"""
 IDLE_PART = 0.3  # Part of the most loaded roller without load from which a result says so. [1]
 SOFT = 20e9  # Modulus below which a material is a plastic: metals have 40 GPa or more. [Pa]
-WARM = 343.15  # Where the slope of the viscosity is looked at, 70 degC. [K]
 LEAST_SLOPE, LARGEST_SLOPE = 1.0, 5.5
 """Slopes of ASTM D341 between which all lubricants are: silicones have 1.2, oils of a viscosity
 index below zero 4.6, by viscosities from general knowledge. [1]"""
@@ -131,11 +130,15 @@ def _notes_of_tables(case: SetCase) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """What is known before anything is solved: what comes before the other notes, and behind."""
     before: list[str] = list(map(Note, (*fluid_notes(case), *lubrication_notes(case))))
     oil = case.lubricant.oil
-    if not LEAST_SLOPE < oil_state(oil, WARM).d341_slope < LARGEST_SLOPE:
+    points = sorted(oil.kinematic_viscosity, key=lambda point: point.temperature)
+    if not all(LEAST_SLOPE < d341_slope(*two) < LARGEST_SLOPE for two in pairwise(points)):
         before.append(
             f"The viscosity of {oil.name} changes with temperature as that of no lubricant does: "
             "correct it at one of its temperatures."
         )
+    usual = type(oil).model_fields["density_slope"].default
+    if len(oil.density) > 1 and oil.density_slope != usual:
+        before.append(f"density_slope of {oil.name} has no effect beside several densities.")
     before += [*load_notes(case), *tooth_notes(case.gearing)]
     behind = [*case.found, *spacing_notes(case.gearing)]
     if case.gearing.listed and case.models.mesh_loads == "without-losses":

@@ -144,6 +144,8 @@ class Mesh:
         r1, r2, a = self.gear1.tip_radius, self.gear2.tip_radius, self.center_distance
         if not self.internal or r1 + a <= r2:
             return math.inf
+        if r1 - a >= r2:  # the tips are in the teeth of the mate all around
+            return -math.pi
         delta1 = math.acos((r2**2 - r1**2 - a**2) / (2 * a * r1))
         delta2 = math.acos((r2**2 - r1**2 + a**2) / (2 * a * r2))
         inv1 = involute(self.gear1.pressure_angle_at(r1))

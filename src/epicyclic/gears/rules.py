@@ -68,6 +68,14 @@ def sound_gears(gearing: Gearing) -> tuple[dict[str, Gear], list[Problem]]:
             allowed += f"gear has {millimetres(diameter)}."
             remedy = "Give tooth_thickness_allowance."
             found = Problem(f"{key}.tooth_thickness_fit", f'"{fit}"', allowed, remedy)
+        stated = table.tooth_thickness_allowance or ()
+        wanted = sorted((-abs(it) for it in stated), reverse=True)
+        if found is None and list(stated) != wanted:
+            allowed = (
+                "must be the upper, then the lower allowance of DIN 3967, none of them positive."
+            )
+            remedy = "Write [" + ", ".join(f'"{1e6 * it:.6g} um"' for it in wanted) + "]."
+            found = Problem(f"{key}.tooth_thickness_allowance", "", allowed, remedy)
         if found is None:
             sound[name] = gear
         else:
@@ -88,7 +96,10 @@ def _check_measure(gear: Gear, key: str, table: StatedGear) -> Problem | None:
         remedy = f"Over {measures.usual_span_teeth(gear)} teeth it would touch mid-flank."
         what = "span_measurement"
     elif table.dimension_over_pins is not None and table.measuring_pin_diameter is not None:
-        radius = measures.pin_contact_radius(gear, table.measuring_pin_diameter)
+        try:
+            radius = measures.pin_contact_radius(gear, table.measuring_pin_diameter)
+        except ValueError:
+            radius = 0.0
         usual = millimetres(measures.usual_pin(gear.rack))
         remedy = f"A usual measuring_pin_diameter is {usual}."
         what = "dimension_over_pins"
@@ -100,6 +111,8 @@ def _check_measure(gear: Gear, key: str, table: StatedGear) -> Problem | None:
     shown = millimetres(getattr(table, what))
     allowed = f"touches at diameter {millimetres(2 * radius)}, beyond the flanks, which reach from "
     allowed += f"{millimetres(2 * low)} to {millimetres(2 * high)}."
+    if radius == 0:
+        allowed = "belongs to balls that do not touch the flanks of teeth with this allowance."
     return Problem(f"{key}.{what}", shown, allowed, f"Check it, tooth number and module. {remedy}")
 
 
@@ -393,12 +406,16 @@ def _check_backlash(gearing: Gearing, mesh: Mesh, distance_key: str) -> list[Pro
     if mesh.backlash >= -ROUNDING:
         return []
     keys = [thickness_key(gearing.key(it.name), gearing.tables[it.name]) for it in mesh.gears]
-    fits = " or ".join(_fitting(gearing, [*_meshes_of(gearing, it)], it) for it in mesh.gears)
+    fits: list[str] = []
+    for it in mesh.gears:
+        with suppress(ValueError):  # another mesh of the gear cannot be
+            fits.append(_fitting(gearing, [*_meshes_of(gearing, it)], it))
+    ways = ", or ".join(filter(None, [" or ".join(fits), _distance(gearing, mesh, distance_key)]))
     usual = recommended_backlash(mesh.gear1.rack, mesh.center_distance)
     less = thinning(mesh.gear1.rack, usual)
     allowed = f"the teeth of the {mesh.name} are {millimetres(-mesh.backlash)} too thick for the "
     allowed += f"centre distance of {millimetres(mesh.center_distance)} (negative backlash)."
-    remedy = f"Zero backlash needs {fits}{_distance(gearing, mesh, distance_key)}; "
+    remedy = f"Zero backlash needs {ways}; " if ways else ""
     remedy += f"reducing one x by {less:.4f} gives {micrometres(usual)} of backlash, as ISO/TR "
     remedy += f"10064-2 recommends.{_other_sign(gearing, mesh)}"
     return [Problem(", ".join(keys), "", allowed, remedy)]
@@ -450,17 +467,18 @@ def _fitting(gearing: Gearing, meshes: list[Mesh], gear: Gear, backlash: float =
 def _distance(gearing: Gearing, mesh: Mesh, key: str) -> str:
     """What centre distance the teeth fit, rounded to the loose side; none that others do not."""
     total = mesh.gear1.profile_shift_coefficient + mesh.gear2.profile_shift_coefficient
-    try:
-        distance = closed_center_distance(mesh.gear1.rack, _teeth(mesh), total)
-    except ValueError:
-        return ""
+    shared = [it for it in gearing.meshes if gearing.distance_key(it) == key]
     loose = math.floor if mesh.internal else math.ceil
-    near = loose(distance * 1e6) / 1e6
-    shared = (it for it in gearing.meshes if gearing.distance_key(it) == key)
-    fits = (Mesh("", gearing.gear(it.first), gearing.gear(it.second), near) for it in shared)
-    if not all(it.backlash >= -ROUNDING for it in fits):
+    try:
+        near = loose(closed_center_distance(mesh.gear1.rack, _teeth(mesh), total) * 1e6) / 1e6
+        for it in shared:
+            if all(gearing.tables[name].states_thickness for name in (it.first, it.second)):
+                one, two = gearing.gear(it.first), gearing.gear(it.second)
+                if Mesh("", one, two, near).backlash < -ROUNDING:
+                    return ""
+    except ValueError:  # another mesh cannot be
         return ""
-    return f', or {key} = "{1e3 * near:.3f} mm"'
+    return f'{key} = "{1e3 * near:.3f} mm"'
 
 
 def _other_sign(gearing: Gearing, mesh: Mesh) -> str:

@@ -45,7 +45,11 @@ class ShortOil(BaseModel):
     density_15: OilDensity | None = option("At 15 °C.")
 
 
-_SHORT_KEYS = ("iso_vg", "viscosity_40", "viscosity_100", "density_15")
+_STATED_BY = {
+    "kinematic_viscosity": ("iso_vg", "viscosity_40", "viscosity_100"),
+    "density": ("density_15",),
+}
+_SHORT_KEYS = tuple(key for keys in _STATED_BY.values() for key in keys)
 
 
 def _is_short(table: object) -> bool:
@@ -73,12 +77,17 @@ def whole_oil(table: dict[str, Any], preset: Mapping[str, Any] | None) -> dict[s
         )
     if grade is not None and "viscosity_40" in table:
         raise _refused_oil("gives iso_vg and viscosity_40, which are the same", "Give one of them")
+    pairs = ((key, whole) for whole, keys in _STATED_BY.items() for key in keys)
+    twice = ", ".join(" and ".join(pair) for pair in pairs if pair[0] in table and pair[1] in table)
+    if twice:
+        raise _refused_oil(f"states the same twice: {twice}", "Keep one key of each pair")
     whole: dict[str, Any]
     if preset is not None and "viscosity_100" not in table:
         whole = dict(preset) | own
     else:
         whole = _typical(str(table.get("kind"))) | own
-        whole["kinematic_viscosity"] = _viscosities(table)
+        if "kinematic_viscosity" not in own:
+            whole["kinematic_viscosity"] = _viscosities(table)
     if "density_15" in table:
         whole["density"] = (_point("15 degC", table["density_15"], "as stated"),)
     return whole
@@ -86,7 +95,9 @@ def whole_oil(table: dict[str, Any], preset: Mapping[str, Any] | None) -> dict[s
 
 def _viscosities(table: Mapping[str, Any]) -> tuple[dict[str, Any], ...]:
     grade, warm = table.get("iso_vg"), table.get("viscosity_100")
-    if warm is None:
+    if warm is None and grade is not None and str(table.get("kind")) not in GOLD:
+        warm = "1 mm^2/s"  # never used: the missing or wrong kind is refused
+    elif warm is None:
         raise _refused_oil(
             "leaves the viscosity at 100 °C open, and no built-in oil has this grade and kind",
             'Add viscosity_100 = "... mm^2/s" from the data sheet',

@@ -31,6 +31,9 @@ from epicyclic.units import (
 STEEPEST_DENSITY = -2.0
 """Oils lose 0.6 to 0.8 kg/m^3 for each kelvin; steeper lines may end below zero. [kg/(m^3 K)]"""
 
+STEEPEST_VISCOSITY = 15.0
+"""Slope of ASTM D341, three times that of any lubricant: steeper lines end in no number. [1]"""
+
 OilDensity = Annotated[
     float, Quantity("a density of an oil", "kg/m^3", "kg/m^3", low=600.0, high=3000.0)
 ]
@@ -209,9 +212,9 @@ class Oil(_Data):
             colder, warmer = viscosities[first], viscosities[second]
             if warmer.temperature == colder.temperature:
                 faults.append(_repeated("kinematic_viscosity", first, second, warmer.temperature))
-            elif warmer.value >= colder.value:
+            elif not 0 < d341_slope(colder, warmer) <= STEEPEST_VISCOSITY:
                 shown, other = map(SQUARE_MM_PER_SECOND.text, (warmer.value, colder.value))
-                what = "must fall with rising temperature, but at "
+                what = "must fall with rising temperature as that of an oil does, but at "
                 what += f"{CELSIUS.text(colder.temperature)} it is {other}"
                 faults.append(_fault(("kinematic_viscosity", second, "value"), shown, what, remedy))
         for first, second in _neighbours(self.density):
@@ -224,6 +227,11 @@ class Oil(_Data):
                 place, shown = ("density", second, "value"), f"{warm.value:g} kg/m^3"
                 what = "must fall with rising temperature, by at most 2 kg/(m^3 K)"
                 faults.append(_fault(place, shown, what, remedy))
+        points = getattr(self.pressure_viscosity, "point", ())
+        for first, second in _neighbours(points):
+            if points[first].temperature == points[second].temperature:
+                where, temperature = "pressure_viscosity.point", points[first].temperature
+                faults.append(_repeated(where, first, second, temperature))
         low, high = self.temperature_range
         if low >= high:
             shown = f"{CELSIUS.text(low)} to {CELSIUS.text(high)}"
@@ -239,14 +247,24 @@ class Oil(_Data):
         return hash((self.name, *(point.value for point in self.kinematic_viscosity)))
 
 
-def _neighbours(points: Sequence[ViscosityPoint | DensityPoint]) -> Iterator[tuple[int, int]]:
+_Point = ViscosityPoint | DensityPoint | PressureViscosityPoint
+
+
+def _neighbours(points: Sequence[_Point]) -> Iterator[tuple[int, int]]:
     """Indices of points next to each other in temperature, the colder one first."""
     return pairwise(sorted(range(len(points)), key=lambda index: points[index].temperature))
 
 
 def _repeated(name: str, first: int, second: int, temperature: float) -> InitErrorDetails:
     what, remedy = f"repeats the temperature {name}[{first}]", "give one value for each temperature"
-    return _fault((name, second, "temperature"), CELSIUS.text(temperature), what, remedy)
+    place = (*name.split("."), second, "temperature")
+    return _fault(place, CELSIUS.text(temperature), what, remedy)
+
+
+def d341_slope(colder: ViscosityPoint, warmer: ViscosityPoint) -> float:
+    """-d(log log(nu + 0.7))/d(log T) of the line of ASTM D341 through two points. [1]"""
+    logs = [math.log(point.value / MM2_PER_S + D341_OFFSET) for point in (colder, warmer)]
+    return math.log(logs[0] / logs[1]) / math.log(warmer.temperature / colder.temperature)
 
 
 def _fault(place: tuple[str | int, ...], given: str, what: str, remedy: str) -> InitErrorDetails:

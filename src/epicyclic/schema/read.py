@@ -245,7 +245,7 @@ def _mended(line: _BadLine) -> str | None:
 def _value(match: re.Match[str]) -> str:
     """The value of a key line, without the quotes that it may have on one side, inches but."""
     text = match["value"].strip()
-    return text if _INCHES.fullmatch(text) else text.strip("\"'")
+    return text if _INCHES.fullmatch(text) else text.strip("\"'“”„‘’")
 
 
 def _take_marks(
