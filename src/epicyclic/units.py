@@ -199,14 +199,16 @@ def describe_range(
 def range_remedy(
     value: float, low: float | None, high: float | None, unit: str = "", *, open_low: bool = False
 ) -> str:
-    """What to do about a `value` beyond its bounds."""
+    """What to do about a `value` beyond its bounds; empty if it is not."""
     if low is not None and (value < low or (open_low and value == low)):
         limit = f"{format_number(low, 10)} {unit}".rstrip()
         return f"give more than {limit}" if open_low else f"increase it to {limit} or more"
+    if high == 1 and not unit and 5 < value <= 100:
+        return f"write {format_number(value / 100, 12)} for {format_number(value, 12)} %"
     if high is not None and value > high:
         limit = f"{format_number(high, 10)} {unit}".rstrip()
         return f"reduce it to {limit} or less"
-    return "give a finite number"
+    return "" if math.isfinite(value) else "give a finite number"
 
 
 def plain_number(text: str) -> str:
@@ -328,7 +330,7 @@ def _parsed_text(quantity: Quantity, text: str) -> float:
     if _MORE_DIGITS.match(match["unit"]):
         raise quantity._error(*_divided(text))
     if not match["unit"]:
-        form = f'write "{text} {quantity.display}"'
+        form = f'write "{quantity.label}{text} {quantity.display}"'
         fits = quantity._is_allowed(float(match["number"]))
         raise quantity._error("has no unit", form if fits else quantity._form())
     return quantity._checked(quantity._converted(float(match["number"]), match["unit"]))
@@ -344,6 +346,8 @@ class Quantity:
     low: float | None = None  # Allowed range, in the display unit.
     high: float | None = None  # Allowed range, in the display unit.
     open_low: bool = False  # True if `low` itself is not allowed.
+    signed_by: str = ""  # The key that has the sign.
+    label: str = ""  # That stands before its values.
 
     def parse(self, value: object) -> float:
         """`value`, text with a unit or a pint quantity, as an SI number.
@@ -365,6 +369,8 @@ class Quantity:
         shown = self.to_display(value)
         if not self._is_allowed(shown):
             remedy = range_remedy(shown, self.low, self.high, self.display, open_low=self.open_low)
+            if self.signed_by and self._is_allowed(-shown):
+                remedy = f'write "{self.text(-value, 12)}"; in trains {self.signed_by} has the sign'
             bounds = self._described() if self.describe() == self.noun else ""
             raise self._error("is out of range", remedy, bounds)
         return value
@@ -541,7 +547,7 @@ Play = Annotated[float, Quantity("a length", "m", "um", low=0.0, high=1e4, open_
 Deviation = Annotated[float, Quantity("a deviation", "m", "um", low=-1e4, high=1e4)]
 Mass = Annotated[float, Quantity("a mass", "kg", "kg", low=0.0, high=1e6)]
 Angle = Annotated[float, Quantity("an angle", "rad", "deg", low=-360.0, high=360.0)]
-HelixAngle = Annotated[float, Quantity("a helix angle", "rad", "deg", low=0.0, high=45.0)]
+HelixAngle = Annotated[float, Quantity("a helix angle", "rad", "deg", 0.0, 45.0, signed_by="hand")]
 Torque = Annotated[float, Quantity("a torque", "N*m", "N*m", low=-1e9, high=1e9)]
 RotationalSpeed = Annotated[
     float, Quantity("a rotational speed", "rad/s", "rpm", low=-1e6, high=1e6)

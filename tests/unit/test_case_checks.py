@@ -222,6 +222,14 @@ def test_a_remedy_for_thick_teeth_leaves_out_what_an_unsound_gear_decides(name, 
     assert "ring" in second.key + second.allowed
 
 
+def test_default_tips_are_pointed_by_thicker_teeth():
+    changes = {"pinion.teeth": 9, "pinion.profile_shift_coefficient": 1.4}
+    gone = ("tooth_thickness", "thickness_diameter", "tip_diameter", "root_diameter")
+    changes |= {f"pinion.{key}": None for key in gone}
+    problem = next(it for it in problems_of_changes(PAIR, changes) if "pointed" in it.allowed)
+    assert problem.remedy.endswith("or reduce pinion.profile_shift_coefficient.")
+
+
 def test_values_are_the_ones_of_the_file():
     (problem,) = problems_of_changes(TALBOT, {"gears.center_distance": "3.62 in"})
     assert problem.key == "sun.tooth_thickness, planet.tooth_thickness"

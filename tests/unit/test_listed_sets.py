@@ -577,6 +577,10 @@ def test_number_of_planets_missing_or_needless():
     assert only(found("layshaft", planet_bearing=BEARING)).key == "sets.S.planet_bearing"
 
 
+def test_a_hand_belongs_to_a_gear():
+    assert only(found("stepped", hand="left")).remedy == "Write gears.NAME.hand."
+
+
 def test_hands_that_cannot_mesh():
     hands = {"gears__sun__hand": "right", "gears__wide__hand": "right"}
     problem = only(found("stepped", **hands))

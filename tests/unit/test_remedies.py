@@ -186,6 +186,20 @@ def test_a_number_in_quotes_that_would_not_do_is_not_proposed(value, remedy):
     assert problem.remedy.startswith(remedy)
 
 
+@pytest.mark.parametrize(
+    ("case", "key", "value", "remedy"),
+    [
+        ("talbot-2012-pair", "gears.helix_angle", "-13.1 deg", 'Write "13.1 deg"; in trains hand'),
+        ("train-8hp70", "sets.P1.efficiency", 97, "Write 0.97 for 97 %."),
+        ("train-8hp70", "sets.P1.efficiency", 1.2, "Reduce it to 1 or less."),
+        ("talbot-2012-pair", "hand", "left", "The keys are"),
+    ],
+)
+def test_a_value_that_fits_and_means_the_same_is_proposed(case, key, value, remedy):
+    (problem,) = problems(case, {key: value})
+    assert problem.remedy.startswith(remedy)
+
+
 @pytest.mark.parametrize("grade", ["ISO VG 220", "VG 220", "iso_vg_220"])
 def test_a_grade_names_every_kind_of_oil(grade):
     (problem,) = problems("talbot-2012-pair", {"lubricant.oil": grade})

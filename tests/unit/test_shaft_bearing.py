@@ -458,6 +458,9 @@ def test_table_over_the_load(oil, tmp_path, state):
     assert bearing.loads(state(3000, BearingLoad(500.0, 0.0))) != {}
 
 
+PUSHED = {"radial_force": "3 N", "axial_force": "2 N"}
+
+
 @pytest.mark.parametrize(
     ("changes", "key"),
     [
@@ -466,6 +469,8 @@ def test_table_over_the_load(oil, tmp_path, state):
         ({"type": "needle", "model": "skf-2018", "series": "62"}, "model"),
         ({"type": "needle", "model": "harris"}, "model"),
         ({"type": "needle", "locating": True}, "locating"),
+        ({"type": "cylindrical", "designation": "NU 208", "locating": True}, "locating"),
+        ({"type": "cylindrical", "designation": "NU 208", **PUSHED}, "axial_force"),
         ({"type": "needle", "radial_force": "1 N", "axial_force": "1 N"}, "axial_force"),
         ({"model": "skf-2018"}, "series"),
         ({"model": "skf-2018", "series": "302"}, "series"),
@@ -687,6 +692,30 @@ def test_who_takes_the_axial_force_is_told_where_nobody_states_it(keys, part):
     found = [note for note in ep.solve(case).warnings if "locating on" in note]
     assert len(found) == bool(part)
     assert not part or found[0].startswith(f"motor_front: {part}; the first is taken")
+
+
+@pytest.mark.parametrize(
+    ("front", "rear", "taker", "told"),
+    [
+        ("NU 207", "6207-2RS1", "motor_rear", "seal friction of 6207-2RS1"),
+        ("NJ 207", "NU 207", "motor_front", ""),
+        ("NU 207", "N 207", "motor_front", "Use one that can."),
+    ],
+)
+def test_a_bearing_that_floats_leaves_the_axial_force_to_the_other(front, rear, taker, told):
+    places = (("motor_front", front, "0 mm"), ("motor_rear", rear, "80 mm"))
+    tables = {
+        f"bearings.{name}": {"shaft": "motor", "designation": designation, "position": place}
+        for name, designation, place in places
+    }
+    result = ep.solve(ep.load_case("train-eaxle").updated(tables))
+    figures = result.parts
+    carried = {name: figures[f"{name}.bearing"].axial_force for name, _, _ in places}
+    assert max(carried, key=carried.get) == taker
+    assert min(carried.values()) == 0
+    notes = [note for note in result.warnings if note.startswith("motor_")]
+    assert any(told in note for note in notes)
+    assert any("locating on motor" in note for note in notes) == (rear == "N 207")
 
 
 def test_arrangements_mirrored_give_mirrored_results(pair_case):

@@ -172,7 +172,7 @@ def test_a_stated_backlash_contains_the_allowances():
         (
             {X: 0.1, "tooth_thickness_allowance": ["70 um", "100 um"]},
             "pinion.tooth_thickness_allowance",
-            "none of them positive",
+            "neither positive",
         ),
         (
             {X: 0.1, "tooth_thickness_allowance": ["-110 um", "-80 um"]},

@@ -18,7 +18,7 @@ from epicyclic.case.tables.elements import (
     ShaftBearingTable,
     between,
 )
-from epicyclic.losses.designations import DesignatedBearing, designated, with_elements
+from epicyclic.losses.designations import SEALED, DesignatedBearing, designated, with_elements
 from epicyclic.losses.houpert import CONFORMITIES, THRUST_CONFORMITIES, THRUST_SHARES, BallModel
 from epicyclic.losses.shaft_bearing import (
     DEFAULT_FLANGE_COEFFICIENTS,
@@ -72,6 +72,8 @@ def _bearing(
     idle |= {"sliding_friction"} if model.name in ("houpert", "zhou-hoeprich") else set()
     idle |= {"flange_coefficient"} if table.type != "cylindrical" else set()
     idle |= {"drag_variable"} if not table.oil_level else set()
+    lacks = f"seal friction of {table.designation} is not included. Give seal with model skf-2018."
+    sealed = SEALED.search(table.designation or "")
     return ShaftBearing(
         key=name,
         between=bodies,
@@ -82,6 +84,7 @@ def _bearing(
         minimum_load_factor=table.minimum_load_factor,
         reference_speed=table.reference_speed,
         limiting_speed=table.limiting_speed,
+        lacks=(lacks,) if sealed and (table.seal is None or model.name != "skf-2018") else (),
     )
 
 

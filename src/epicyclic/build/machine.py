@@ -26,7 +26,7 @@ from epicyclic.dataclass import dataclass, field, replace
 from epicyclic.errors import ConvergenceError
 from epicyclic.gears.gear import CARRIER, HOUSING
 from epicyclic.losses.pocket_tables import FlowTables
-from epicyclic.losses.ranges import Flags, ValidityFlag
+from epicyclic.losses.ranges import Flags, ValidityFlag, floats
 from epicyclic.machine.convection import (
     GRAVITY_TEMPERATURE,
     WATER,
@@ -357,8 +357,9 @@ def _support(tables: Tables, name: str) -> Support:
     """A bearing of a shaft as a support, at its pressure centre. Theory (J30)."""
     table = tables[name]
     bearing, place = catalogue_bearing(table), table.position or 0.0
-    sense, outer = table.axial_sense if table.locating else "none", 0.0
     others = [other for key, other in tables.items() if key != name]
+    free = [floats(one.type, one.designation) for one in (table, *others)]
+    sense, outer = table.axial_sense if table.locating or free == [False, True] else "none", 0.0
     if bearing.thrust_ratio and table.axial_sense != "both":
         sense = table.axial_sense
     elif bearing.thrust_ratio and len(others) == 1:
@@ -373,7 +374,7 @@ def _support(tables: Tables, name: str) -> Support:
     return Support(place + outer, sense, bearing.thrust_ratio, preload)
 
 
-def _remarks(case: TrainCase) -> Iterator[tuple[str, tuple[str, str]]]:
+def _remarks(case: TrainCase) -> Iterator[tuple[str, tuple[str, tuple[str, ...]]]]:
     """Of bearings, what is assumed of their axial force, and what their force leaves out."""
     borne = borne_shafts(case)
     for shaft, tables in borne.items():
@@ -392,12 +393,14 @@ def _remarks(case: TrainCase) -> Iterator[tuple[str, tuple[str, str]]]:
         ):
             assumed = "the bearing arrangement is not given; X is assumed, as is usual for gear "
             assumed += 'shafts. Write arrangement = "X" or "O".'
-        elif len(tables) == 2 and not angular and senses[1:] == senses[:1]:
+        free = [floats(one.type, one.designation) for one in tables.values()]
+        if len(tables) == 2 and not angular and senses[1:] == senses[:1] and free[0] == free[1]:
             who = "both bearings are" if senses else "no bearing is"
+            advice = "Use one that can." if free[0] else "Write locating = true for one of them."
             assumed = f"{who} locating on {shaft}; the first is taken to carry all the axial "
-            assumed += "force. Write locating = true for one of them."
+            assumed += f"force. {advice}"
         for name in tables:
-            yield name, (assumed, lacks if on_it else "")
+            yield name, (assumed, (lacks,) if on_it else ())
 
 
 def _seats(case: TrainCase, shaft: str, sets: Mapping[str, GearSet]) -> Iterator[GearSeat]:
@@ -517,7 +520,7 @@ def _parts(case: TrainCase | PlanetaryCase, shafts: Mapping[str, str]) -> Iterat
         )
         if name in remarks and isinstance(element, ShaftBearing):
             assumed, lacks = remarks[name]
-            element = replace(element, assumed=assumed, lacks=lacks)
+            element = replace(element, assumed=assumed, lacks=(*element.lacks, *lacks))
         yield element
 
 

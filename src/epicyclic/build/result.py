@@ -38,7 +38,7 @@ from epicyclic.machine.planets import SHARING_METHODS, BearingFigures
 from epicyclic.machine.pocket_flow import oil_in_mesh
 from epicyclic.machine.shaft_parts import ShaftBearing
 from epicyclic.machine.solve import Solution, stage_torques
-from epicyclic.oil.oil import d341_slope
+from epicyclic.oil.oil import Oil, d341_slope
 from epicyclic.result.result import (
     HeatBalance,
     HeatPath,
@@ -136,8 +136,7 @@ def _notes_of_tables(case: SetCase) -> tuple[tuple[str, ...], tuple[str, ...]]:
             f"The viscosity of {oil.name} changes with temperature as that of no lubricant does: "
             "correct it at one of its temperatures."
         )
-    usual = type(oil).model_fields["density_slope"].default
-    if len(oil.density) > 1 and oil.density_slope != usual:
+    if len(oil.density) > 1 and oil.density_slope != Oil.model_fields["density_slope"].default:
         before.append(f"density_slope of {oil.name} has no effect beside several densities.")
     before += [*load_notes(case), *tooth_notes(case.gearing)]
     behind = [*case.found, *spacing_notes(case.gearing)]

@@ -26,7 +26,7 @@ from epicyclic.schema.fields import (
     quantity_of,
 )
 from epicyclic.schema.read import flattened, plain, split_key, with_unit_of_key, with_value, without
-from epicyclic.schema.validation import tables_of, unknown_key
+from epicyclic.schema.validation import unknown_key
 
 _UNCERTAINTY = "uncertainty."
 _GEARS, _MEMBERS = "gears", "members"
@@ -266,5 +266,5 @@ def _changed(kind: type[Table], tables: dict[str, Any], key: str, value: Any) ->
     if value_at(tables, path) is not None:
         return without(tables, path)
     if find_field(kind, key) is None:
-        raise InputError([unknown_key(locate(kind, path), None, tables_of(kind).items())])
+        raise InputError([unknown_key(locate(kind, path), None, kind)])
     return tables

@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 import math
-import re
 from functools import lru_cache
 from itertools import pairwise
 from typing import Literal
 
 import numpy as np
-from pydantic_core import PydanticCustomError
 
 from epicyclic.arrays import FloatArray, on_grid
 from epicyclic.dataclass import dataclass
 from epicyclic.gears.gear import Gear
 from epicyclic.gears.mesh import Mesh
-from epicyclic.units import Quantity
 
 # Contact lines in the plane of action, at every mesh position of one base pitch.
 #
@@ -235,8 +232,6 @@ PROFILE_CUTOFF = 0.8e-3  # l_c of profiles of Ra 0.1 to 2 um, ISO 21920-3, [m]
 MIDDLE_OF_CLASS = 0.45e-6  # and the middle of that class, as a geometric mean. [m]
 HURST_EXPONENT = 0.5
 """H of machined surfaces: variance of heights grows with length (Sayles, Thomas 1978). [1]"""
-MOST_ROUGHNESS = 100.0  # Rq. [um]
-_STATED = re.compile(r"\s*(R[aqz])(?![a-z])[\s=]*(.*)", re.IGNORECASE)
 RA_OVER_RQ = math.sqrt(2 / math.pi)  # Ra/Rq of a Gaussian profile. [1]
 
 RZ_OVER_RA = 6.0  # Rz/Ra, DIN 3991 approximation, as the FVA-Workbench uses it. [1]
@@ -258,23 +253,3 @@ def rq_of(
     0.627
     """
     return {"Rq": 1.0, "Ra": 1 / RA_OVER_RQ, "Rz": 1 / (RZ_OVER_RA * RA_OVER_RQ)}[parameter] * value
-
-
-class _Parameter(Quantity):
-    """The roughness parameter of its noun, which messages put before values."""
-
-    def _error(self, what: str, remedy: str, allowed: str = "") -> PydanticCustomError:
-        return super()._error(what, remedy.replace('"', f'"{self.noun} ', 1), allowed)
-
-
-def stated_parameter(text: object) -> tuple[str, float] | None:
-    """Parameter and value of a roughness as in ``"Ra 0.4 um"``, in m; None of others.
-
-    Raises `PydanticCustomError` of values that cannot be read.
-    """
-    match = _STATED.fullmatch(text) if isinstance(text, str) else None
-    if match is None:
-        return None
-    name = match[1].capitalize()
-    most = MOST_ROUGHNESS // rq_of(name, 1.0)
-    return name, _Parameter(name, "m", "um", 0.0, most, open_low=True).parse(match[2])

@@ -71,9 +71,7 @@ def sound_gears(gearing: Gearing) -> tuple[dict[str, Gear], list[Problem]]:
         stated = table.tooth_thickness_allowance or ()
         wanted = sorted((-abs(it) for it in stated), reverse=True)
         if found is None and list(stated) != wanted:
-            allowed = (
-                "must be the upper, then the lower allowance of DIN 3967, none of them positive."
-            )
+            allowed = "must be the upper, then the lower allowance of DIN 3967, neither positive."
             remedy = "Write [" + ", ".join(f'"{1e6 * it:.6g} um"' for it in wanted) + "]."
             found = Problem(f"{key}.tooth_thickness_allowance", "", allowed, remedy)
         if found is None:
@@ -96,10 +94,9 @@ def _check_measure(gear: Gear, key: str, table: StatedGear) -> Problem | None:
         remedy = f"Over {measures.usual_span_teeth(gear)} teeth it would touch mid-flank."
         what = "span_measurement"
     elif table.dimension_over_pins is not None and table.measuring_pin_diameter is not None:
-        try:
+        radius = 0.0
+        with suppress(ValueError):
             radius = measures.pin_contact_radius(gear, table.measuring_pin_diameter)
-        except ValueError:
-            radius = 0.0
         usual = millimetres(measures.usual_pin(gear.rack))
         remedy = f"A usual measuring_pin_diameter is {usual}."
         what = "dimension_over_pins"
@@ -191,6 +188,8 @@ def _check_tooth(gear: Gear, key: str, table: StatedGear) -> Problem | None:
     if gear.thickness_at(gear.tip_radius) <= 0:
         allowed = "the teeth become pointed below the tip circle."
         remedy = f"Shorten the teeth, or make them thicker with {thickness}."
+        if table.tip_diameter is None and not gear.internal:  # thicker teeth are longer
+            remedy = f"Shorten the teeth with {tip}, or reduce {thickness}."
         return Problem(tip, tip_shown, allowed, remedy)
     if gear.tip_form_radius <= gear.base_radius or gear.tip_half_angle <= 0:
         allowed = "leaves no tip land or no involute: the tooth is "
@@ -467,18 +466,17 @@ def _fitting(gearing: Gearing, meshes: list[Mesh], gear: Gear, backlash: float =
 def _distance(gearing: Gearing, mesh: Mesh, key: str) -> str:
     """What centre distance the teeth fit, rounded to the loose side; none that others do not."""
     total = mesh.gear1.profile_shift_coefficient + mesh.gear2.profile_shift_coefficient
-    shared = [it for it in gearing.meshes if gearing.distance_key(it) == key]
+    same = [it for it in gearing.meshes if gearing.distance_key(it) == key]
+    stated = {name for name, table in gearing.tables.items() if table.states_thickness}
+    pairs = [(it.first, it.second) for it in same if {it.first, it.second} <= stated]
     loose = math.floor if mesh.internal else math.ceil
     try:
         near = loose(closed_center_distance(mesh.gear1.rack, _teeth(mesh), total) * 1e6) / 1e6
-        for it in shared:
-            if all(gearing.tables[name].states_thickness for name in (it.first, it.second)):
-                one, two = gearing.gear(it.first), gearing.gear(it.second)
-                if Mesh("", one, two, near).backlash < -ROUNDING:
-                    return ""
+        fits = [Mesh("", gearing.gear(one), gearing.gear(two), near) for one, two in pairs]
+        tight = any(it.backlash < -ROUNDING for it in fits)
     except ValueError:  # another mesh cannot be
         return ""
-    return f'{key} = "{1e3 * near:.3f} mm"'
+    return "" if tight else f'{key} = "{1e3 * near:.3f} mm"'
 
 
 def _other_sign(gearing: Gearing, mesh: Mesh) -> str:

@@ -22,6 +22,7 @@ _BORES = {"00": 10, "01": 12, "02": 15, "03": 17, "/22": 22, "/28": 28, "/32": 3
 _ANGLES = {"AC": 25.0, "A": 30.0, "B": 40.0, "C": 15.0, "E": 25.0}
 """Contact angle by the letter after the size of an angular contact ball bearing. [deg]"""
 _WITHOUT_RIB = re.compile(r"(NUP|NJ|N)(?=\d)")  # the other cylindrical types have the sizes of NU
+SEALED = re.compile(r"\d.*(RS|LLU|DDU)", re.IGNORECASE)
 _BY_SIZE = re.compile(r"(?P<kind>NKI)(?P<bore>\d+)/(?P<width>\d+)")
 _CAGE = re.compile(r"K(?P<bore>\d+)X(?P<outside>\d+)X(?P<width>\d+)")
 
@@ -143,15 +144,6 @@ def designated(text: str) -> DesignatedBearing:
     return with_elements(bearing)
 
 
-def thrust_bearing(text: str) -> tuple[float, float, float]:
-    """Bore, outside diameter, height of a thrust bearing of ISO 104; `KeyError` as above."""
-    name = re.sub(r"[\s.\-]", "", text.upper())
-    known = {name: one for name, one in _known().items() if one.type.startswith("thrust")}
-    if name not in known:
-        raise KeyError(did_you_mean(name, known))
-    return known[name].bore / 1e3, known[name].outside_diameter / 1e3, known[name].width / 1e3
-
-
 @cache
 def _known() -> Mapping[str, DesignatedBearing]:
     """Every designation made of series and bore, without spaces."""
@@ -265,8 +257,7 @@ def _planet_keys(raw: Mapping[str, Any]) -> dict[str, Any]:
 def _thrust_keys(raw: Mapping[str, Any]) -> dict[str, Any]:
     found = designated_or_any(raw["designation"], "51108")
     diameter = f"{1e3 * (found.bore + found.outside_diameter) / 2:g} mm"
-    factor = THRUST_FACTORS.get(found.type, math.nan)  # without one its key has that problem
-    return {"mean_diameter": diameter, "viscous_factor": factor}
+    return {"mean_diameter": diameter, "viscous_factor": THRUST_FACTORS.get(found.type, 1.5)}
 
 
 def _checked(text: str) -> DesignatedBearing:
@@ -287,11 +278,11 @@ def _checked_planet(text: str) -> None:
 
 
 def _checked_thrust(text: str) -> None:
-    try:
-        thrust_bearing(text)
-    except KeyError as error:
+    name = re.sub(r"[\s.\-]", "", text.upper())
+    known = [name for name, one in _known().items() if one.type.startswith("thrust")]
+    if name not in known:
         reason = 'is not known; it must be a size of ISO 104, such as "51108"'
-        raise KeyError(reason, error.args[0] or "Give mean_diameter instead") from None
+        raise KeyError(reason, did_you_mean(name, known) or "Give mean_diameter instead")
 
 
 CHECKS: Mapping[str, Callable[[str], object]] = {

@@ -26,6 +26,13 @@ BearingType = Literal[
 """Kinds of rolling bearings: a model holds for some of them."""
 Cage = Literal["caged", "full-complement"]
 
+
+def floats(kind: str, designation: str | None) -> bool:
+    """True of bearings that carry no axial force: needles, and those with ribs on one ring only."""
+    name = (designation or "").upper()  # NU 208, N 208, NN 3010; not NJ, NUP, NCF
+    return kind == "needle" or (name[:1] == "N" and name.lstrip("NU .-")[:1].isdigit())
+
+
 # Ranges in which models were made: values held in them, and flags for what leaves them.
 
 

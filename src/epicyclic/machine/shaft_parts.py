@@ -297,7 +297,7 @@ class ShaftBearing(ShaftPart):
     reference_speed: float | None = None
     limiting_speed: float | None = None  # None for that of the type. [rad/s]
     assumed: str = ""  # Of its axial force, where nobody states which bearing takes it.
-    lacks: str = ""  # What its force leaves out.
+    lacks: tuple[str, ...] = ()  # What its force and its loss leave out.
     idle: tuple[str, ...] = ()  # Keys that are stated and not used by its model.
 
     figure_types: ClassVar = (("bearing", ShaftBearingFigures),)
@@ -355,8 +355,8 @@ class ShaftBearing(ShaftPart):
         if self.idle:
             told = f"the model {self.model.name} does not use {', '.join(self.idle)}."
             yield Note(f"{self.key}: {told}", watts)
-        if self.lacks:
-            yield f"{self.key}: {self.lacks}"  # nobody knows how many watts it means
+        for lack in self.lacks:
+            yield f"{self.key}: {lack}"  # nobody knows how many watts it means
         # what holds the rolling elements to the races [N]
         both = self.bearing.type in ("deep-groove", "tapered", "spherical")
         carried = math.hypot(load.radial, load.axial) if both else load.radial

@@ -45,15 +45,8 @@ class ShortOil(BaseModel):
     density_15: OilDensity | None = option("At 15 °C.")
 
 
-_STATED_BY = {
-    "kinematic_viscosity": ("iso_vg", "viscosity_40", "viscosity_100"),
-    "density": ("density_15",),
-}
-_SHORT_KEYS = tuple(key for keys in _STATED_BY.values() for key in keys)
-
-
-def _is_short(table: object) -> bool:
-    return isinstance(table, Mapping) and any(key in table for key in _SHORT_KEYS)
+_SHORT_KEYS = dict.fromkeys(("iso_vg", "viscosity_40", "viscosity_100"), "kinematic_viscosity")
+_SHORT_KEYS["density_15"] = "density"
 
 
 def _refused_oil(what: str, remedy: str) -> PydanticCustomError:
@@ -66,7 +59,7 @@ def whole_oil(table: dict[str, Any], preset: Mapping[str, Any] | None) -> dict[s
     `preset` has those of a built-in oil of this grade and kind, if there is one. Raises
     `PydanticCustomError` if the table does not tell the viscosity at two temperatures.
     """
-    if not _is_short(table):
+    if not _SHORT_KEYS.keys() & table.keys():
         return table
     grade = table.get("iso_vg")
     own = {key: value for key, value in table.items() if key not in _SHORT_KEYS}
@@ -75,13 +68,10 @@ def whole_oil(table: dict[str, Any], preset: Mapping[str, Any] | None) -> dict[s
         raise _refused_oil(
             f"has no viscosity grade of ISO 3448: iso_vg must be one of {near}", "Choose one"
         )
-    if grade is not None and "viscosity_40" in table:
-        raise _refused_oil("gives iso_vg and viscosity_40, which are the same", "Give one of them")
-    pairs = ((key, whole) for whole, keys in _STATED_BY.items() for key in keys)
-    twice = ", ".join(" and ".join(pair) for pair in pairs if pair[0] in table and pair[1] in table)
+    pairs = [("iso_vg", "viscosity_40"), *_SHORT_KEYS.items()]
+    twice = ", ".join(" and ".join(pair) for pair in pairs if {*pair} <= table.keys())
     if twice:
         raise _refused_oil(f"states the same twice: {twice}", "Keep one key of each pair")
-    whole: dict[str, Any]
     if preset is not None and "viscosity_100" not in table:
         whole = dict(preset) | own
     else:
@@ -133,7 +123,7 @@ def short_oil_told(table: object, preset: str | None) -> tuple[str, str] | None:
 
     `preset` is the name of the built-in oil of this grade and kind.
     """
-    if not isinstance(table, Mapping) or not _is_short(table):
+    if not isinstance(table, Mapping) or not _SHORT_KEYS.keys() & table.keys():
         return None
     if preset is not None and "viscosity_100" not in table:
         return preset, "the built-in oil of this grade and kind ('epicyclic oils' shows it)."

@@ -30,9 +30,7 @@ from epicyclic.units import (
 
 STEEPEST_DENSITY = -2.0
 """Oils lose 0.6 to 0.8 kg/m^3 for each kelvin; steeper lines may end below zero. [kg/(m^3 K)]"""
-
-STEEPEST_VISCOSITY = 15.0
-"""Slope of ASTM D341, three times that of any lubricant: steeper lines end in no number. [1]"""
+STEEPEST_VISCOSITY = 15.0  # Slope of ASTM D341, three times that of any lubricant. [1]
 
 OilDensity = Annotated[
     float, Quantity("a density of an oil", "kg/m^3", "kg/m^3", low=600.0, high=3000.0)
@@ -227,11 +225,9 @@ class Oil(_Data):
                 place, shown = ("density", second, "value"), f"{warm.value:g} kg/m^3"
                 what = "must fall with rising temperature, by at most 2 kg/(m^3 K)"
                 faults.append(_fault(place, shown, what, remedy))
-        points = getattr(self.pressure_viscosity, "point", ())
-        for first, second in _neighbours(points):
-            if points[first].temperature == points[second].temperature:
-                where, temperature = "pressure_viscosity.point", points[first].temperature
-                faults.append(_repeated(where, first, second, temperature))
+        for first, second in _neighbours(points := getattr(self.pressure_viscosity, "point", ())):
+            if (warmer := points[second].temperature) == points[first].temperature:
+                faults.append(_repeated("pressure_viscosity.point", first, second, warmer))
         low, high = self.temperature_range
         if low >= high:
             shown = f"{CELSIUS.text(low)} to {CELSIUS.text(high)}"
@@ -247,18 +243,14 @@ class Oil(_Data):
         return hash((self.name, *(point.value for point in self.kinematic_viscosity)))
 
 
-_Point = ViscosityPoint | DensityPoint | PressureViscosityPoint
-
-
-def _neighbours(points: Sequence[_Point]) -> Iterator[tuple[int, int]]:
+def _neighbours(points: Sequence[Any]) -> Iterator[tuple[int, int]]:
     """Indices of points next to each other in temperature, the colder one first."""
     return pairwise(sorted(range(len(points)), key=lambda index: points[index].temperature))
 
 
-def _repeated(name: str, first: int, second: int, temperature: float) -> InitErrorDetails:
+def _repeated(name: str, first: int, second: int, kelvin: float) -> InitErrorDetails:
     what, remedy = f"repeats the temperature {name}[{first}]", "give one value for each temperature"
-    place = (*name.split("."), second, "temperature")
-    return _fault(place, CELSIUS.text(temperature), what, remedy)
+    return _fault((*name.split("."), second, "temperature"), CELSIUS.text(kelvin), what, remedy)
 
 
 def d341_slope(colder: ViscosityPoint, warmer: ViscosityPoint) -> float:

@@ -10,7 +10,7 @@ from functools import cache, partial
 from types import MappingProxyType
 from typing import Any, Generic, TypeVar
 
-from pydantic import BaseModel, ValidationError
+from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from epicyclic.dataclass import dataclass
@@ -78,15 +78,18 @@ def translate(table: type[Table], detail: ErrorDetails) -> Problem:
 def unknown_key(
     place: Place,  # Place of the key.
     value: Any,
-    # Names and classes of the tables in which the key might belong.
-    tables: Iterable[tuple[str, type[BaseModel]]],
+    case: type[Table],  # In whose tables the key might belong.
     sets: Iterable[str] = (),  # Names of the sets of a train, of which one might be meant.
 ) -> Problem:
     """The problem of a key that the schema does not have."""
     name = str(place.path[-1])
     known = () if place.owner is None else tuple(place.owner.model_fields)
     remedy = did_you_mean(name, known)
-    homes = () if remedy else [f"{table}.{name}" for table, it in tables if name in it.model_fields]
+    homes = [
+        f"{table}.{'NAME.' if dict_value(case.model_fields[table].annotation) else ''}{name}"
+        for table, it in tables_of(case).items()
+        if name in it.model_fields
+    ]
     if place.path[0] == _OF_KEYS and isinstance(value, dict):
         remedy = f'Write {_OF_KEYS}."{dotted(place.path[1:])}", with the key in quotes.'
     elif not remedy and homes:
@@ -140,30 +143,24 @@ def _wrong_tag(place: Place, detail: ErrorDetails) -> Problem:
 
 def _remedy(place: Place, kind: str, value: Any) -> str:
     """What to change about a `value` that is not what `place` may hold."""
+    low, high, is_open = bounds_of(place.annotation, place.metadata)
     if kind in _OUT_OF_RANGE:
-        low, high, is_open = bounds_of(place.annotation, place.metadata)
         return range_remedy(value, low, high, open_low=is_open)
     if kind == "literal_error":
         choices = choices_of(place.annotation)
         only = f'write "{choices[0]}"' if len(choices) == 1 else "choose one of them"
         return did_you_mean(str(value), choices) or only
     if kind in ("int_type", "float_type"):
-        low, high, is_open = bounds_of(place.annotation, place.metadata)
         match = _PLAIN_NUMBER.fullmatch(value[:100]) if isinstance(value, str) else None
         number = value if isinstance(value, float) and math.isfinite(value) else None
         number = number if match is None or match[2] else float(match[1])
-        if number is not None and not _is_within(number, low, high, is_open):
-            return range_remedy(number, low, high, open_low=is_open)
+        if number is not None and (remedy := range_remedy(number, low, high, open_low=is_open)):
+            return remedy
         is_whole = kind == "int_type" and match is not None and not match[1].isdigit()
         return _number_remedy(number if is_whole and number is not None else value)
     if table_of(place.annotation) is not None:
         return _table_remedy(place.path, value)
     return _REMEDIES.get(kind, "correct this value")
-
-
-def _is_within(number: float, low: float | None, high: float | None, is_open: bool) -> bool:
-    low_ok = low is None or (number > low if is_open else number >= low)
-    return low_ok and (high is None or number <= high)
 
 
 def _table_remedy(path: Sequence[str | int], value: Any) -> str:
@@ -220,10 +217,7 @@ def validate(
     problems = list(control_problems({k: v for k, v in raw.items() if k not in sound}))
     while unknown := [locate(kind, it["loc"]) for it in details if it["type"] == "extra_forbidden"]:
         # repeated, as a table that was misspelt itself may have unknown keys of its own
-        tables = tables_of(kind).items()
-        problems += [
-            unknown_key(place, value_at(raw, place.path), tables, sets) for place in unknown
-        ]
+        problems += [unknown_key(place, value_at(raw, place.path), kind, sets) for place in unknown]
         raw = _mend_names(raw, unknown)
         if isinstance(own := raw.get(_OF_KEYS), dict):  # those without quotes are told
             raw[_OF_KEYS] = {key: table for key, table in own.items() if table != {}}

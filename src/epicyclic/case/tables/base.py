@@ -6,6 +6,7 @@ and the commented template. Values are SI after validation.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from functools import cache
 from typing import Annotated, Any
@@ -14,21 +15,14 @@ from pydantic import BeforeValidator, Field, GetJsonSchemaHandler
 from pydantic_core import CoreSchema, PydanticCustomError
 
 from epicyclic import library
-from epicyclic.gears.flanks import (
-    MOST_ROUGHNESS,
-    RA_OVER_RQ,
-    RZ_BAND,
-    RZ_OVER_RA,
-    rq_of,
-    stated_parameter,
-)
+from epicyclic.gears.flanks import RA_OVER_RQ, RZ_BAND, RZ_OVER_RA, rq_of
 from epicyclic.gears.measures import named_fit
 from epicyclic.messages import did_you_mean, titled, value_at
 from epicyclic.oil.grades import ShortOil, whole_oil
 from epicyclic.oil.oil import Conductivity, HeatCapacity, Oil
 from epicyclic.schema.fields import Named, Table, option
 from epicyclic.schema.read import plain
-from epicyclic.units import Density, Modulus, Number, Quantity
+from epicyclic.units import MILLIMETRE, Density, Modulus, Number, Quantity
 
 
 def _no_preset(
@@ -39,13 +33,19 @@ def _no_preset(
     return PydanticCustomError("preset", "no such {noun}; it must be {allowed}", values)
 
 
+_PARAMETER = re.compile(r"(R[aqz])(?![a-z])[\s=]*(.*)")
+
+
 class _Roughness(Quantity):
     """A length, also with its parameter, ``"Ra 0.4 um"``, or the name of a built-in finish."""
 
     def parse(self, value: object) -> float:
         finishes = library.named("finishes")
-        if (stated := stated_parameter(value)) is not None:
-            return rq_of(*stated)
+        text = value.strip().capitalize() if isinstance(value, str) else ""
+        if named := _PARAMETER.fullmatch(text):
+            most = 100 // rq_of(named[1], 1.0)
+            stated = Quantity(named[1], "m", "um", 0.0, most, open_low=True, label=f"{named[1]} ")
+            return rq_of(named[1], stated.parse(named[2]))
         if isinstance(value, str) and value in finishes:
             value = finishes[value]["roughness"]
         elif isinstance(value, str) and value[:1].isalpha():
@@ -65,7 +65,7 @@ class _Roughness(Quantity):
 
 
 Roughness = Annotated[
-    float, _Roughness("an rms roughness", "m", "um", low=0.0, high=MOST_ROUGHNESS, open_low=True)
+    float, _Roughness("an rms roughness", "m", "um", low=0.0, high=100.0, open_low=True)
 ]
 
 
@@ -87,17 +87,20 @@ ThicknessFit = Annotated[str, BeforeValidator(_known_fit, json_schema_input_type
 
 def roughness_told(text: object) -> tuple[float, str] | None:
     """Rq of a roughness that is stated as Ra or Rz, and how it was converted; None of others."""
-    name, value = stated_parameter(text) or ("Rq", 0.0)
-    if name == "Rq":
+    if not isinstance(text, str):
         return None
-    how = f"Rq from {' '.join(str(text).split())}: Ra = {RA_OVER_RQ:.3f} Rq of a Gaussian profile"
-    if name == "Rz":
+    named = _PARAMETER.fullmatch(text.strip().capitalize())
+    if named is None or named[1] == "Rq":
+        return None
+    value = MILLIMETRE.parse(named[2])
+    how = f"Rq from {' '.join(text.split())}: Ra = {RA_OVER_RQ:.3f} Rq of a Gaussian profile"
+    if named[1] == "Rz":
         low, high = (value / (ratio * RA_OVER_RQ) for ratio in reversed(RZ_BAND))
         how += (
             f", Rz = {RZ_OVER_RA:g} Ra (DIN 3991); Rz/Ra from {RZ_BAND[0]:g} to {RZ_BAND[1]:g} "
             f"makes it {1e6 * low:.3g} to {1e6 * high:.3g} um"
         )
-    return rq_of(name, value), f"{how}."
+    return rq_of(named[1], value), f"{how}."
 
 
 Stress = Annotated[float, Quantity("a stress", "Pa", "MPa", low=0.0, high=1e6, open_low=True)]

@@ -23,7 +23,7 @@ from epicyclic.case.tables.base import (
 )
 from epicyclic.errors import InputError, Problem, one_problem, raise_any
 from epicyclic.gears.gear import HOUSING
-from epicyclic.losses.ranges import BearingType, Cage
+from epicyclic.losses.ranges import BearingType, Cage, floats
 from epicyclic.messages import did_you_mean, millimetres, written
 from epicyclic.schema.fields import PointsTable, Table, ValuesOrRows, option
 from epicyclic.units import Length, Number, Play, Quantity, SmallLength, Temperature, VolumeFlow
@@ -533,13 +533,11 @@ def _force_problems(table: ShaftBearingTable) -> Iterator[Problem]:
     if table.axial_force is not None and table.radial_force is None:
         remedy = 'Add radial_force = "0 N" if there is none.'
         yield Problem("radial_force", "", "is missing, but axial_force is given.", remedy)
-    if table.type == "needle":
-        reason = "is not possible with a needle roller bearing, which carries no axial force."
-        remedy = "Locate the shaft by another bearing."
-        if table.locating:
-            yield Problem("locating", "true", reason, remedy)
-        if table.axial_force:
-            yield Problem("axial_force", f"{table.axial_force:g} N", reason, remedy)
+    for key in ("locating", "axial_force") if floats(table.type, table.designation) else ():
+        if getattr(table, key):
+            kind = table.designation or "a needle roller bearing"
+            reason = f"is not possible with {kind}, which carries no axial force."
+            yield Problem(key, "", reason, "Locate the shaft by another bearing.")
 
 
 def _skf_problems(table: ShaftBearingTable) -> Iterator[Problem]:
