@@ -533,11 +533,11 @@ def _force_problems(table: ShaftBearingTable) -> Iterator[Problem]:
     if table.axial_force is not None and table.radial_force is None:
         remedy = 'Add radial_force = "0 N" if there is none.'
         yield Problem("radial_force", "", "is missing, but axial_force is given.", remedy)
-    for key in ("locating", "axial_force") if floats(table.type, table.designation) else ():
-        if getattr(table, key):
+    for key, shown in {"locating": "true", "axial_force": f"{table.axial_force or 0:g} N"}.items():
+        if getattr(table, key) and floats(table.type, table.designation):
             kind = table.designation or "a needle roller bearing"
             reason = f"is not possible with {kind}, which carries no axial force."
-            yield Problem(key, "", reason, "Locate the shaft by another bearing.")
+            yield Problem(key, shown, reason, "Locate the shaft by another bearing.")
 
 
 def _skf_problems(table: ShaftBearingTable) -> Iterator[Problem]:
