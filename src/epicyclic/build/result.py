@@ -38,7 +38,7 @@ from epicyclic.machine.planets import SHARING_METHODS, BearingFigures
 from epicyclic.machine.pocket_flow import oil_in_mesh
 from epicyclic.machine.shaft_parts import ShaftBearing
 from epicyclic.machine.solve import Solution, stage_torques
-from epicyclic.oil.oil import Oil, d341_slope
+from epicyclic.oil.oil import Oil, oil_state
 from epicyclic.result.result import (
     HeatBalance,
     HeatPath,
@@ -130,8 +130,9 @@ def _notes_of_tables(case: SetCase) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """What is known before anything is solved: what comes before the other notes, and behind."""
     before: list[str] = list(map(Note, (*fluid_notes(case), *lubrication_notes(case))))
     oil = case.lubricant.oil
-    points = sorted(oil.kinematic_viscosity, key=lambda point: point.temperature)
-    if not all(LEAST_SLOPE < d341_slope(*two) < LARGEST_SLOPE for two in pairwise(points)):
+    warm = sorted(point.temperature for point in oil.kinematic_viscosity)
+    slopes = [oil_state(oil, (one + two) / 2).d341_slope for one, two in pairwise(warm)]
+    if not LEAST_SLOPE < min(slopes) <= max(slopes) < LARGEST_SLOPE:
         before.append(
             f"The viscosity of {oil.name} changes with temperature as that of no lubricant does: "
             "correct it at one of its temperatures."

@@ -210,7 +210,10 @@ class Oil(_Data):
             colder, warmer = viscosities[first], viscosities[second]
             if warmer.temperature == colder.temperature:
                 faults.append(_repeated("kinematic_viscosity", first, second, warmer.temperature))
-            elif not 0 < d341_slope(colder, warmer) <= STEEPEST_VISCOSITY:
+                continue
+            logs = [math.log(it.value / MM2_PER_S + D341_OFFSET) for it in (colder, warmer)]
+            slope = math.log(logs[0] / logs[1]) / math.log(warmer.temperature / colder.temperature)
+            if not 0 < slope <= STEEPEST_VISCOSITY:
                 shown, other = map(SQUARE_MM_PER_SECOND.text, (warmer.value, colder.value))
                 what = "must fall with rising temperature as that of an oil does, but at "
                 what += f"{CELSIUS.text(colder.temperature)} it is {other}"
@@ -251,12 +254,6 @@ def _neighbours(points: Sequence[Any]) -> Iterator[tuple[int, int]]:
 def _repeated(name: str, first: int, second: int, kelvin: float) -> InitErrorDetails:
     what, remedy = f"repeats the temperature {name}[{first}]", "give one value for each temperature"
     return _fault((*name.split("."), second, "temperature"), CELSIUS.text(kelvin), what, remedy)
-
-
-def d341_slope(colder: ViscosityPoint, warmer: ViscosityPoint) -> float:
-    """-d(log log(nu + 0.7))/d(log T) of the line of ASTM D341 through two points. [1]"""
-    logs = [math.log(point.value / MM2_PER_S + D341_OFFSET) for point in (colder, warmer)]
-    return math.log(logs[0] / logs[1]) / math.log(warmer.temperature / colder.temperature)
 
 
 def _fault(place: tuple[str | int, ...], given: str, what: str, remedy: str) -> InitErrorDetails:
