@@ -72,6 +72,7 @@ def _bearing(
     idle |= {"sliding_friction"} if model.name in ("houpert", "zhou-hoeprich") else set()
     idle |= {"flange_coefficient"} if table.type != "cylindrical" else set()
     idle |= {"drag_variable"} if not table.oil_level else set()
+    usual = ShaftBearingTable(shaft="any", type="needle", bore="1 mm", outside_diameter="2 mm")
     lacks = f"seal friction of {table.designation} is not included. Give seal with model skf-2018."
     sealed = SEALED.search(table.designation or "")
     return ShaftBearing(
@@ -80,7 +81,7 @@ def _bearing(
         bearing=catalogue_bearing(table),
         model=model,
         force=force,
-        idle=tuple(sorted(idle & table.model_fields_set)),
+        idle=tuple(sorted(it for it in idle if getattr(table, it) != getattr(usual, it))),
         minimum_load_factor=table.minimum_load_factor,
         reference_speed=table.reference_speed,
         limiting_speed=table.limiting_speed,

@@ -15,7 +15,7 @@ from epicyclic.build.machine import IN_BATH, Built
 from epicyclic.build.models import ONLY_WITH, SetCase, oil_share, standing_of, with_lubrication
 from epicyclic.case.case import Case, TrainCase
 from epicyclic.case.tables.models import LoadSharing
-from epicyclic.case.tables.operation import SHARE_KEY
+from epicyclic.case.tables.operation import SHARE_KEY, HousingTable, ThermalTable
 from epicyclic.case.tables.uncertainty import stated_values
 from epicyclic.contact.fitted_models import changed_properties
 from epicyclic.gears.assembly import spacing_notes
@@ -158,7 +158,7 @@ def _notes_of_tables(case: SetCase) -> tuple[tuple[str, ...], tuple[str, ...]]:
             behind.append(f"models.{key} has no effect with models.{roles[0]} = {chosen[0]}.")
     friction = case.chosen["friction"]
     beside = ["friction_table"] if case.friction_table and friction != "table" else []
-    beside += ["contact_solver"] if case.contact_solver.model_fields_set else []
+    beside += ["contact_solver"] if case.contact_solver != type(case.contact_solver)() else []
     if beside and friction != "ehl-direct":
         behind.append(f"[{beside[0]}] has no effect with models.friction = {friction}.")
     return tuple(before), tuple(map(Note, behind))
@@ -576,12 +576,14 @@ def _idle_heat(case: Case) -> Iterator[str]:
     idle |= {"jet_effectiveness": way} if wet <= {*IN_BATH} else {}
     if not table.cooler_conductance:
         idle["coolant_temperature"] = "without cooler_conductance"
-    for key in sorted(table.model_fields_set & idle.keys()):
+    usual = ThermalTable()
+    for key in sorted(key for key in idle if getattr(table, key) != getattr(usual, key)):
         yield f"thermal.{key} has no effect {idle[key]}."
     if housing is not None:
-        keys = _OF_HOUSING[housing.method != "iso-14179-1"]
-        for key in sorted(housing.model_fields_set & keys):
-            yield f"thermal.housing.{key} has no effect with method = {housing.method}."
+        usual_one = HousingTable(area="1 m^2", method=housing.method)
+        for key in sorted(_OF_HOUSING[housing.method != "iso-14179-1"]):
+            if getattr(housing, key) != getattr(usual_one, key):
+                yield f"thermal.housing.{key} has no effect with method = {housing.method}."
 
 
 def _solution_notes(case: Case, settled: Settled) -> Iterator[str]:
