@@ -22,7 +22,7 @@ from epicyclic.plugins.design import candidates as enumerating
 from epicyclic.plugins.design import search as searching
 from epicyclic.plugins.design.candidates import LAYOUTS, case_tables, distances, sizes
 from epicyclic.plugins.design.commands import design as command
-from epicyclic.plugins.design.mass import rotor_dynamics, rotor_text
+from epicyclic.plugins.design.mass import parts, rotor_dynamics, rotor_text
 from epicyclic.plugins.design.relief import Relief, relief_front
 from epicyclic.plugins.design.report import fates_table, front_of, stored
 from epicyclic.plugins.design.search import case_text, design, dominated, screen, search
@@ -104,6 +104,17 @@ def test_screened_sizes_are_those_of_the_case(name):
         assert meshes[0].face_width == pytest.approx(
             row["width_ratio"] * 2 * meshes[0].gear1.reference_radius, rel=1e-5
         )
+        external = {gear for mesh in meshes for gear in (mesh.gear1, mesh.gear2)}
+        tips = [
+            2 * it.tip_radius * it.tip_half_angle * math.cos(it.rack.helix_angle)
+            / it.rack.normal_module
+            for it in external if not it.internal
+        ]  # fmt: skip
+        known = found.bounds.loc[number, "tip_thickness"] * task.limits.tip_thickness
+        assert known == pytest.approx(min(tips), rel=1e-4)
+        bodies = [part for part in parts(case) if not part.name.endswith("carrier")]
+        mass = sum(part.count * part.mass for part in bodies)
+        assert row["mass"] == pytest.approx(mass, rel=0.02)  # of rings tips leave involutes
     assert checked >= 1
 
 
@@ -350,7 +361,9 @@ def test_a_polished_design_meets_the_limits_and_the_front_is_told_anew(monkeypat
     own = sizes(task, found.table.loc[[number]].dropna(axis=1))
     assert min(it[0] for it in own.margins.values()) >= 1 - 1e-9
     assert found.table.loc[number, "mass"] == pytest.approx(own.mass[0], rel=1e-12)
-    assert found.table.loc[number, "shift"] > found.table.loc[number, "polished_shift"]
+    assert found.table.loc[number, "shift"] > (start := found.table.loc[number, "polished_shift"])
+    before = sizes(task, found.table.loc[[number]].dropna(axis=1).assign(shift=start))
+    assert own.mass[0] <= before.mass[0]  # the other objective is no worse
     values = found.table.loc[found.fronts, ["loss", "mass"]].to_numpy()
     assert not dominated(values, values).any()
 

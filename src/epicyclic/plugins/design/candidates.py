@@ -36,6 +36,8 @@ BEST_SOFT_LIMIT = 1.5  # The same if one of both gears is through-hardened. [1]
 LEAST_ROOT = 2.0  # Y_F Y_S of any tooth, about. [1]
 LEAST_HELIX = 0.75  # Y_beta. [1]
 TIP_ROOM = 0.35  # Roll length between base circle of a planet and tip of its ring. [modules]
+PIN, ROLLER = 0.8, 0.2  # Diameters of pin and rollers of planets over their root radius. [1]
+BORE = PIN / 2 + ROLLER  # Radius of the bore over that, the same. [1]
 COARSE = {"mesh_positions": 12, "contact_segments": 12, "bearing_slices": 10}
 """Numerics of designs, unless the task states others."""
 STEEL, DENSITY = 206e9 / (1 - 0.3**2), 7850.0  # [Pa], [kg/m^3]
@@ -351,12 +353,14 @@ def sizes(task: Task, table: pd.DataFrame) -> Sizes:
             least("contact_ratio", (alpha + overlap) / task.limits.contact_ratio)
             is_mesh = (np.abs(cosine) <= 1) & (alpha > 0.5) & np.isfinite(alpha)
             least("mesh", np.where(is_mesh, 1.0, 0.0))
-            # tips
-            tip_angle = np.arccos(np.clip(z1 * bases / tip1, -1, 1))
-            half = (math.pi / 2 + 2 * x1 * math.tan(alpha_n)) / z1 + inv_t
-            half -= np.tan(tip_angle) - tip_angle
-            tip = 2 * tip1 * half * np.cos(helix) / module
-            least("tip_thickness", np.clip(tip / max(task.limits.tip_thickness, 1e-9), 0, 10))
+            # tips; those of rings are wide
+            for count, x, outer in ((z1, x1, tip1), (z2, x2, tip2))[: 1 if mesh.internal else 2]:
+                tip_angle = np.arccos(np.clip(count * bases / outer, -1, 1))
+                half = (math.pi / 2 + 2 * x * math.tan(alpha_n)) / count + inv_t
+                half -= np.tan(tip_angle) - tip_angle
+                tip = 2 * outer * half * np.cos(helix) / module
+                margin = np.clip(tip / max(task.limits.tip_thickness, 1e-9), 0, 10)
+                least("tip_thickness", margin)
             # bounds of loss and strength
             carried = mesh.torque(z)
             turning = mesh.speed(z)
@@ -405,10 +409,14 @@ def sizes(task: Task, table: pd.DataFrame) -> Sizes:
             module = modules[stage]
             radius = z[gear] * module / np.cos(helix) / 2
             x = shifts[gear]
-            number = planets if gear.startswith(("planet", "wide", "narrow")) else 1
-            area = radius**2
+            turns = gear.startswith(("planet", "wide", "narrow"))
+            number = planets if turns else 1
+            area = (radius + module * (x - 0.125)) ** 2  # teeth to half their depth
             if "ring" in gear:
                 area = (radius + module * (4.25 - x)) ** 2 - (radius + module * (0.125 - x)) ** 2
+            elif turns and task.choices.bearings:
+                smaller = np.minimum(z.get("wide", z[gear]), z.get("narrow", z[gear]))
+                area -= (BORE * (smaller / 2 - 1.25) * module) ** 2
             mass += number * math.pi * area * faces[stage] * DENSITY
         width = sum(faces.values()) * (2 if "wide" in z else 1)  # A stepped planet has two widths.
         known = {"diameter": diameter, "width": width, "mass": mass, "backlash": backlash}
@@ -584,7 +592,7 @@ def _planet_tables(
         "carrier": {"outer_diameter": _mm(2 * (distance + 0.7 * root)), "width": _mm(1.4 * width)}
     }
     if task.choices.bearings:
-        pin, roller = 0.8 * root, 0.2 * root  # diameters: the bore is that of half the root
+        pin, roller = PIN * root, ROLLER * root
         tables["planet_bearing"] = {
             "rows": 2,
             "rollers_per_row": max(8, int(0.85 * math.pi * (pin + roller) / roller)),

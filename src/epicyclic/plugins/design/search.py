@@ -464,12 +464,14 @@ def _polish(found: Found, number: int, tell: Callable[[str], None]) -> None:
 
     start, known = (float(found.table.loc[number, name]) for name in ("shift", "loss"))
     tried: list[dict[str, float]] = []
+    others = [name for name in found.task.search.objectives if name != "loss"]
 
     def loss_at(shift: float) -> float:
         made = _shifted(found, number, float(shift))
         if made is None:
             return 10 * known
-        tried.append(made)
+        if all(made[it] <= found.table.loc[number, it] for it in others):  # else it is another one
+            tried.append(made)
         return made["loss"]
 
     minimize_scalar(
