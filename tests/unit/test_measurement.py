@@ -304,6 +304,12 @@ def test_what_cannot_be_done_is_refused(case, tests, options, words):
         ep.compare_measured(case, tests, **options)
 
 
+def test_columns_of_losses_that_are_not_read_are_told(case, tests):
+    table = tests.assign(**{"efficiency [%]": 97.5, "torque loss [N*m]": 0.3})
+    (note,) = (it for it in ep.compare_measured(case, table).notes if "column" in it)
+    assert note == "the losses are those of the column loss; not used: torque_loss, efficiency."
+
+
 def test_more_inputs_than_points_are_refused(case, tests):
     with pytest.raises(ep.InputError, match="2 inputs cannot be fitted to 1"):
         ep.compare_measured(case, tests[:1], fit=KEYS)

@@ -137,6 +137,10 @@ nan,500,90,400 W,0,4,total
     [
         ("speed [rpm],torque [N*m]\n1,2\n", "temperature: is missing"),
         (GOOD.replace("run", "loss [W]"), "second column"),
+        (
+            GOOD.replace("run", "operation.speed [rpm]"),
+            r"operation.speed \[rpm\]: is a second .* of speed",
+        ),
         (GOOD.replace("run", "run [W"), "not a name with a unit"),
         (GOOD.replace("run", "planet.angles"), "a list"),
         (GOOD.replace("run", "planet.count [1/s]"), "no unit in the case"),
@@ -153,6 +157,20 @@ nan,500,90,400 W,0,4,total
 def test_mistakes_name_the_place(read, text, words):
     found = "\n".join(map(str, problems_of(read, text)))
     assert re.search(words, found), found
+
+
+@pytest.mark.parametrize("names", ["total+sun_drag", "sun_drag+sun_drag",
+                                   "load_dependent+sun_mesh_sliding"])  # fmt: skip
+def test_a_loss_counts_once(read, names):
+    """Also in each row; what depends on the load holds no drag."""
+    column = GOOD.replace("run", "component").replace(",1\n", f",{names}\n")
+    text = column.replace(",2\n", ",load_dependent+sun_drag\n")
+    (problem,) = problems_of(read, text)
+    assert (problem.allowed, problem.value) == ("counts a loss twice.", f'"{names}" in line 3')
+    (problem,) = problems_of(read, GOOD, component=names)
+    assert problem.allowed == "counts a loss twice."
+    told = [it.allowed for it in problems_of(read, text, component="sun_drag")]
+    assert told == ["is given together with a column of that name.", "counts a loss twice."]
 
 
 def test_a_mistake_in_every_row_is_one_problem(read):

@@ -23,7 +23,7 @@ from epicyclic.result.result import versions
 from epicyclic.study.bands.inputs import factors_of_kind
 from epicyclic.study.measured.intervals import Fit, FittedParameter
 from epicyclic.study.measured.residuals import Computed
-from epicyclic.study.measured.table import Measurements
+from epicyclic.study.measured.table import STATED_BY, Measurements
 from epicyclic.study.operating import OPERATING, shaft_power
 from epicyclic.units import CELSIUS, format_number
 
@@ -314,7 +314,10 @@ class MeasuredComparison:
 
 
 def notes_on(table: Measurements, computed: Computed) -> Iterator[str]:
-    """What to know of a comparison: failed points, what is not included, ranges."""
+    """What to know of a comparison: columns, failed points, what is not included, ranges."""
+    read, *others = (name for name in STATED_BY if name in table.labels)
+    if others:
+        yield f"the losses are those of the column {read}; not used: {', '.join(others)}."
     failed = [
         (line, text) for line, text in zip(table.lines, computed.messages, strict=True) if text
     ]

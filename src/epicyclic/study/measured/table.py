@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -19,7 +19,8 @@ from epicyclic.errors import InputError, Problem, first_of, raise_any
 from epicyclic.messages import did_you_mean, misspelt, one_line, sentence
 from epicyclic.schema.fields import entry_of, is_text, quantity_of
 from epicyclic.schema.read import parse_value
-from epicyclic.study.operating import AXES, OPERATING, STATE, STATE_KEY, shaft_power
+from epicyclic.study.operating import AXES, NAMES, OPERATING, STATE, STATE_KEY, shaft_power
+from epicyclic.study.solve import solve
 from epicyclic.study.sweeps.axes import known_field
 from epicyclic.study.table_file import HEADER, Grid, missing_remedy, unit_problem
 from epicyclic.units import NEWTON_METRE, NUMBER, RPM, WATT, Quantity, format_number
@@ -36,6 +37,7 @@ _PERCENT, _UNIT_OF_PARTS = "%", "dimensionless"
 _EFFICIENCY, _TORQUE_OUT, _SPEED_OUT = "efficiency", "output_torque", "output_speed"
 _TORQUE_LOSS = "torque_loss"
 """Columns from which the total loss follows where it is no column itself."""
+STATED_BY = ("loss", _TORQUE_LOSS, _EFFICIENCY, _TORQUE_OUT)  # Of these the first is read.
 _NUMBER_WITH_UNIT = re.compile(r"[+-]?[\d.,]+(?:[eE][+-]?\d+)?\s*(?![eE][+-]?\d)[^\d\s.,].*")
 
 
@@ -186,10 +188,11 @@ def _columns(grid: Grid, case: Case, problems: _Problems) -> dict[str, _Column]:
             continue
         name = match["name"]
         name = name.lower() if name.lower() in (*_OWN, *own) else name
+        name = NAMES[name] if NAMES.get(name) in own else name
         cells = tuple(row[number] for _, row in grid.rows)
         column = _Column(header, name, (match["unit"] or "").strip(), cells)
         if name in columns:
-            allowed, remedy = "is a second column of that name.", "Delete one."
+            allowed, remedy = f"is a second column of {one_line(name)}.", "Delete one."
             problems.found.append(Problem(one_line(header), "", allowed, remedy))
             continue
         problem = _name_problem(column, case)
@@ -394,21 +397,31 @@ def _finite(cell: str) -> float:
 def _components(
     column: _Column | None, given: str, case: Case, grid: Grid, problems: _Problems
 ) -> tuple[str, ...]:
-    names = loss_names(case)
-    remedy = f"The losses are {', '.join(names)}; join several with +."
+    wrong = _no_sum(given, case)
+    if column is not None and given != "total":
+        wrong = "is given together with a column of that name.", "Keep one of them."
+    if wrong is not None:
+        problems.found.append(Problem("component", one_line(given), *wrong))
     if column is None:
-        if not _is_sum_of(names, given):
-            problems.found.append(Problem("component", one_line(given), "is not a loss.", remedy))
         return (given,) * len(grid.rows)
+    of_cells = {text: _no_sum(text, case) for text in dict.fromkeys(column.cells)}
     for row, cell in enumerate(column.cells):
-        if not _is_sum_of(names, cell):
-            problems.cell(column, row, "is not a loss.", remedy)
+        if found := of_cells[cell]:
+            problems.cell(column, row, *found)
     return column.cells
 
 
-def _is_sum_of(names: Iterable[str], text: str) -> bool:
-    parts = parts_of(text)
-    return set(parts) <= set(names) and len(set(parts)) == len(parts)
+def _no_sum(text: str, case: Case) -> tuple[str, str] | None:
+    """Why a component is no loss, nor a sum in which each loss counts once, and what to do."""
+    names, parts = loss_names(case), parts_of(text)
+    if not set(parts) <= set(names):
+        return "is not a loss.", f"The losses are {', '.join(names)}; join several with +."
+    sums = {LOAD_DEPENDENT, "load_independent"}.intersection(parts)
+    groups = solve(case).groups if sums and len(parts) > len(sums) else {}
+    inside = any(groups.get(part, "").replace("-", "_") in sums for part in parts)
+    if inside or len(set(parts)) < len(parts) or ("total" in parts and len(parts) > 1):
+        return "counts a loss twice.", "Name each once; load_dependent and total are sums."
+    return None
 
 
 def _values(
