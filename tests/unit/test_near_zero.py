@@ -84,6 +84,16 @@ def test_a_map_states_its_error_at_the_middle_and_at_the_slowest_speed(case):
     assert data.attrs["torque_interpolation_error"] == pytest.approx(float(found[0][0]) / 100)
 
 
+def test_a_loss_of_none_has_an_error_in_watts_alone():
+    """Between -80 and 80 N m a train of given efficiencies loses nothing at no torque."""
+    torques = ["-80 N*m", "80 N*m"]
+    data = ep.loss_map("train-8hp70", ["1300 rpm"], torques, states=["1"], jobs=1)
+    error = float(data["total"].mean())
+    told = f"largest error of the total loss is {error:.2g} W at 1300 rpm and 0 N·m: 3 points"
+    assert told in data.attrs["torque_interpolation"]
+    assert np.isfinite(data.attrs["torque_interpolation_error"])
+
+
 @pytest.mark.parametrize(
     ("options", "count"),
     [

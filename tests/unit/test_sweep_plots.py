@@ -9,7 +9,7 @@ from matplotlib.collections import LineCollection, QuadMesh
 from matplotlib.figure import Figure
 
 import epicyclic as ep
-from epicyclic.show.plots.catalogue import available, figure_of
+from epicyclic.show.plots.catalogue import available, explorable, figure_of
 from epicyclic.show.plots.loss_map import FINER
 from epicyclic.show.plots.sweep import plot_sweep_field, plot_sweep_lines, plot_sweep_parallel
 from epicyclic.study.sweeps.run import write_dataset
@@ -88,6 +88,13 @@ def test_one_key_gives_lines_only():
     data = swept({"models.friction": ["schlenk", "constant"]})
     assert list(available(data)) == ["lines"]
     figure_of(data, "lines")
+    chart = explorable(plot_sweep_lines(data, "total", Figure().subplots()))
+    (line,) = chart["data"]
+    assert line["x"] == ["schlenk", "constant"]  # names, which no format of numbers fits
+    assert "{x}" in line["hovertemplate"]
+    assert (chart["layout"]["xaxis"]["type"], chart["layout"]["yaxis"]["type"]) == (
+        "category", "linear",
+    )  # fmt: skip
 
 
 def test_a_damaged_sweep_is_refused(data, tmp_path):

@@ -347,7 +347,26 @@ def test_curves_of_too_few_samples_explain_nothing():
     losses[0, 1::3] = np.nan  # as of samples without a solution
     few = fit_curves(mask, samples, losses)
     assert np.isnan(few.explained)
-    np.testing.assert_allclose(few.at(drawn)[-1], np.nanmean(losses))
+    assert np.isnan(few.at(drawn)[-1]).all()
+
+
+@pytest.mark.slow
+def test_too_few_samples_tell_no_causes():
+    """Of 20 inputs, six of which are models, curves have 35 columns: 32 of 16 samples are fewer."""
+    quick = ISOLATED | {"models.temperatures": "inlet", "numerics.contact_segments": 7}
+    del quick["losses.mesh_pocketing.include"]
+    pockets = {f"losses.{mesh}_mesh_pocketing.include": False for mesh in ("sun", "ring")}
+    case = ep.load_case("talbot-2012").updated(quick | pockets)
+    few = "16 samples are too few to tell the causes. Take 32 or more."
+    over = ep.uncertainty(ep.loss_map(case, ["900 rpm"], ["60 N*m"], jobs=1), samples=16, jobs=1)
+    _, causes, notes = uncertainty_items(over)
+    assert causes.items == (few,)
+    assert not any("Without effect" in note or "At most" in note for note in notes.items)
+    energy = ep.uncertainty(case, CYCLE, ["60 degC"], samples=16, points=2, jobs=1)
+    _, causes, _, notes = uncertainty_items(energy)
+    assert {row[-1].text for row in causes.rows} == {"-"}
+    assert few in notes.items
+    assert np.isnan([over["first_order"].max(), energy["first_order"].max()]).all()
 
 
 @pytest.mark.slow

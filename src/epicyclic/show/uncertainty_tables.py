@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from rich.console import RenderableType
 
+from epicyclic.case.tables.uncertainty import MODEL_FORM
 from epicyclic.messages import one_line
 from epicyclic.result.result import Result, in_words
 from epicyclic.show.page import MISSING, Cell, KeyFigure, Listing, Table, aligned, number, shown
@@ -154,7 +155,8 @@ def map_band_tables(data: xr.Dataset) -> Iterator[Table | Listing]:
         total = point.sel(result="total").transpose("speed", "torque", ...)
         yield grid_table(point, "95 % band of the total loss, W", _band_of(total))
     yield _drivers(data)
-    yield Listing(tuple(_limits(data)), LIMITS)
+    if not _too_few(data):
+        yield Listing(tuple(_limits(data)), LIMITS)
 
 
 def _limits(data: xr.Dataset) -> Iterator[str]:
@@ -217,16 +219,33 @@ def _drivers(data: xr.Dataset) -> Table | Listing:
         f"is weighted with the loss. The curves explain {percent(known)} or more of it at every "
         "point."
     )
-    return _causes(("", "mean share", "largest", "at"), rows, note)
+    return _causes(("", "mean share", "largest", "at"), rows, note, *_too_few(data))
 
 
-def _causes(head: tuple[str, ...], rows: Sequence[tuple[Cell, ...]], note: str) -> Table | Listing:
+def _causes(
+    head: tuple[str, ...], rows: Sequence[tuple[Cell, ...]], note: str, *without: str
+) -> Table | Listing:
     title = "Causes of the uncertainty of the total loss"
-    return Table(head, tuple(rows), title, note=note) if rows else Listing((), title)
+    return Table(head, tuple(rows), title, note=note) if rows else Listing(without, title)
+
+
+def _too_few(data: xr.Dataset) -> tuple[str, ...]:
+    """What to do where no curves go through the samples: they are fewer than the columns of these.
+
+    See `epicyclic.study.bands.samples.fit_curves`.
+    """
+    explained = data.get("explained", data.get("curves_explain"))
+    if explained is None or explained.notnull().any():
+        return ()
+    squares = (key for key in map(str, data["input"].values) if not key.startswith(MODEL_FORM))
+    half = (1 + data.sizes["input"] + len([*squares])) // 2
+    count = int(data.attrs["samples"])
+    more = max(2 * count, 1 << half.bit_length())
+    return (f"{count} samples are too few to tell the causes. Take {more} or more.",)
 
 
 NO_SHARE = 1e-3
-"""Share in the variance of a loss below which curves through samples show no effect. [1]"""
+"""Share in the variance of a loss up to which curves through samples show hardly an effect. [1]"""
 SCATTER = 0.01  # Difference of shares that is worth a sentence. [1]
 CUT_OFF = 1e-3  # Probability of impossible values that is worth a sentence. [1]
 
@@ -335,7 +354,8 @@ def _budget(data: xr.Dataset) -> Table | Listing:
         if not total["contribution"].sel(input=keys).any():
             continue
         one = total.sel(driver=driver)
-        shares = [percent(max(float(one[name]), 0.0)) for name in orders]
+        known = [float(one[name]) for name in orders]  # NaN with too few samples
+        shares = [MISSING if math.isnan(it) else percent(max(it, 0.0)) for it in known]
         for place, key in enumerate(keys):
             own = total.sel(input=key)
             unit = unit_text(str(own["input_unit"].values)).removesuffix("1")
@@ -391,7 +411,9 @@ def _notes(data: xr.Dataset) -> Iterator[str]:
     idle = [str(key) for key in data["input"].values if not _moves(data, str(key))]
     names = _names(data)
     if idle:
-        yield f"Without effect here: {', '.join(names[key] for key in idle)}."
+        at_most = f"At most {percent(NO_SHARE)} of the variance at any point"
+        what = "Without effect here" if "contribution" in data else at_most
+        yield f"{what}: {', '.join(names[key] for key in idle)}."
     yield from _of_points(data)
     sources: dict[str, list[str]] = {}
     for key in sorted(set(map(str, data["input"].values)) - set(idle)):
@@ -405,7 +427,7 @@ def _moves(data: xr.Dataset, key: str) -> bool:
     if "contribution" in data:
         return bool(data["contribution"].sel(input=key).any())
     driver = next(name for name in map(str, data["driver"].values) if key in name.split(" + "))
-    return bool((data["total_order"].sel(driver=driver) > NO_SHARE).any())
+    return not data["total_order"].sel(driver=driver).max() <= NO_SHARE  # also of NaN
 
 
 def _of_points(data: xr.Dataset) -> Iterator[str]:
@@ -421,7 +443,6 @@ def _of_points(data: xr.Dataset) -> Iterator[str]:
             f"Cycle: {data.attrs['cycle']}; {data.attrs['points']} points represent it, so u_c of "
             f"the total has a standard error of {percent(error / spread, 0)}."
         )
-    yield (
-        "Shares from curves through the samples, which explain "
-        f"{percent(float(data['curves_explain']))} of the variance of the total."
-    )
+    known = percent(float(data["curves_explain"]))
+    curves = f"Shares from curves through the samples, which explain {known} of the variance of"
+    yield from _too_few(data) or (f"{curves} the total.",)

@@ -15,6 +15,8 @@ import numpy as np
 import xarray as xr
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
+from matplotlib.category import StrCategoryFormatter
 from matplotlib.collections import FillBetweenPolyCollection, QuadMesh, TriMesh
 from matplotlib.colors import to_hex, to_rgba
 from matplotlib.container import BarContainer
@@ -478,7 +480,7 @@ def _layout(ax: Axes) -> dict[str, Any]:
         layout[name] = AXIS | {
             "title": {"text": _escaped(axis.label.get_text()).replace("\n", "<br>")}
             | {"standoff": 8, "font": FONT},
-            "type": "log" if is_log else "linear",
+            "type": "category" if _has_names(axis) else "log" if is_log else "linear",
             "range": _list(np.log10(ends) if is_log else ends),
         }
     labels = _bar_labels(ax)
@@ -486,6 +488,10 @@ def _layout(ax: Axes) -> dict[str, Any]:
         ticks = {"tickvals": list(labels), "ticktext": list(labels.values())}
         layout["yaxis"] |= ticks | {"tickmode": "array"}
     return layout
+
+
+def _has_names(axis: Axis) -> bool:
+    return isinstance(axis.get_major_formatter(), StrCategoryFormatter)
 
 
 def _bar_labels(ax: Axes) -> dict[float, str]:
@@ -538,6 +544,7 @@ def _line(ax: Axes, line: Line2D, labels: tuple[str, str]) -> dict[str, Any] | N
     if line.get_transform() != ax.transData:
         return None
     style, nothing = line.get_linestyle(), ("None", "", " ", None)
+    hover = _hover(*labels)
     parts = {"lines": style, "markers": line.get_marker()}
     return {
         "type": "scatter",
@@ -547,7 +554,7 @@ def _line(ax: Axes, line: Line2D, labels: tuple[str, str]) -> dict[str, Any] | N
         "y": _list(line.get_ydata()),
         "line": {"color": to_hex(line.get_color()), "dash": DASHES.get(str(style), "dash")},
         "marker": {"size": 4},
-        "hovertemplate": _hover(*labels),
+        "hovertemplate": hover.replace("{x:.5~g}", "{x}") if _has_names(ax.xaxis) else hover,
     }
 
 
@@ -690,8 +697,10 @@ def _levels(lines: ContourSet, field: Mapping[str, Any]) -> Iterator[dict[str, A
         }
 
 
-def _list(values: Any) -> list[float | None]:
-    """Plain numbers of few digits, None for what is none."""
+def _list(values: Any) -> list[Any]:
+    """Plain numbers of few digits, None for what is none; names as they are."""
+    if np.asarray(values).dtype.kind == "U":
+        return [_escaped(name) for name in np.asarray(values).tolist()]
     numbers = np.asarray(values, dtype=float).ravel().tolist()
     return [float(f"{one:.{DIGITS}g}") if math.isfinite(one) else None for one in numbers]
 

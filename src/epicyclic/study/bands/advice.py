@@ -63,7 +63,7 @@ def known_of(data: xr.Dataset) -> Known:
     """What a dataset of `uncertainty`, of a case or cycle or kept with a result, says."""
     results = [str(name) for name in data["result"].values]
     inputs = [str(key) for key in data["input"].values]
-    own = data["first_order"].sel(sum="total").clip(0.0, 1.0)
+    own = data["first_order"].sel(sum="total").clip(0.0, 1.0).fillna(0.0)
     ends = zip(data["low"].values.tolist(), data["high"].values.tolist(), strict=True)
     return Known(
         unit=unit_of(data),

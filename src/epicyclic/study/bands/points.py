@@ -129,9 +129,7 @@ class MapStudy(Study):
             curves = fit_curves(outputs.load_dependent, samples, losses[: len(outputs.losses)])
             explained[number] = curves.explained
             sets = curves.sets(drawn(samples.values))[:, -1:]
-            if not np.isfinite(curves.explained):
-                shares[number] = np.nan
-            elif np.ptp(sets) > 0:
+            if np.ptp(sets) != 0:  # NaN with too few samples
                 shares[number] = np.concatenate(index_values(sets[0], sets[1], sets[2:]))
         return shares, explained
 

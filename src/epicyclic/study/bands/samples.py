@@ -228,12 +228,13 @@ def sobol_indices(
 
 
 def index_values(a: FloatArray, b: FloatArray, mixed: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """First and total indices, shape (s, g), after Saltelli and Jansen, by scipy."""
+    """First and total indices, shape (s, g), after Saltelli and Jansen, by scipy; NaN of NaN."""
     from scipy import stats
 
     found = stats.sobol_indices(func={"f_A": a, "f_B": b, "f_AB": mixed}, n=a.shape[1])
     shape = (a.shape[0], mixed.shape[0])
-    return found.first_order.reshape(shape), found.total_order.reshape(shape)
+    known = np.where(np.isnan(a).any(axis=1), np.nan, 1.0)[:, None]  # scipy makes 0 of NaN
+    return known * found.first_order.reshape(shape), known * found.total_order.reshape(shape)
 
 
 # Losses as curves of what is uncertain, fitted to samples: indices at no further solution.
@@ -278,8 +279,8 @@ def fit_curves(dependent: BoolArray, samples: Samples, losses: FloatArray) -> Cu
     columns = _columns(samples.values, drawn)
     count, size = columns.shape
     if count <= size:
-        means = known.sum(axis=1) / max(count, 1)
-        return Curves(dependent, samples.values, np.zeros((size, len(losses))), means)
+        nothing = np.full((size, len(losses)), np.nan)
+        return Curves(dependent, samples.values, nothing, nothing[0])
     varies = (known > 0).all(axis=1) & (known.std(axis=1) > ROUNDING * known.max(axis=1))
     slopes = np.zeros((size, len(losses)))
     slopes[:, varies], *_ = np.linalg.lstsq(columns, np.log(known[varies]).T)

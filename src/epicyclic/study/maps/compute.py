@@ -254,15 +254,19 @@ def torque_interpolation(data: xr.Dataset, case: Case) -> dict[str, str | float]
     found, texts = [], []
     for speed, line, own in zip(ends, lines, middles, strict=True):
         exact, direct = direct[: own.size], direct[own.size :]
-        with np.errstate(divide="ignore", invalid="ignore"):  # of no loss there is no part
-            error = np.interp(own, torques, line["total"].values) / exact - 1
-            error = np.abs(error).round(12)  # less is rounding
-        if np.isfinite(error).any():
-            worst = int(np.nanargmax(error))
-            found.append(float(f"{error[worst]:.2g}"))
-            watts = WATT.text(error[worst] * exact[worst], 2)
-            at = f"{format_number(speed)} rpm and {torque_text(float(own[worst]), 3)}"
-            texts.append(f"{100 * error[worst]:.2g} % ({watts}) at {at}")
+        read = np.interp(own, torques, line["total"].values)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            error = np.abs(read / exact - 1).round(12)  # less is rounding
+            watts = np.where(exact > 0, error * exact, read)
+        if not np.isnan(error).all():
+            is_part = np.isfinite(error)  # of no loss there is no part
+            worst = int(np.nanargmax(watts if np.isinf(error).any() else error))
+            found.append(float(f"{error[is_part].max(initial=0.0):.2g}"))
+            size = WATT.text(watts[worst], 2)
+            size = f"{100 * error[worst]:.2g} % ({size})" if is_part[worst] else size
+            texts.append(
+                f"{size} at {format_number(speed)} rpm and {torque_text(float(own[worst]), 3)}"
+            )
     if not found:
         return {}
     return {
