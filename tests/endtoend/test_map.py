@@ -170,6 +170,7 @@ def test_a_map_warns_as_run_does_where_most_is_lost(tmp_path, epicyclic, coarse_
     screen = " ".join(epicyclic("run", "talbot-2012", *at, *cold).stdout.split())
     assert len(rest) == 3
     assert all(text in screen for text in rest)
+    assert "\n4 of 4 points use a model outside its range, most at " in done.stderr
 
 
 @pytest.mark.parametrize("suffix", ["csv", "parquet"])

@@ -309,6 +309,16 @@ def test_a_key_that_changes_no_loss_is_told(tmp_path, epicyclic, coarse_options)
     assert "operation.torque." not in done.stderr
 
 
+def test_points_outside_the_range_of_a_model_are_told(tmp_path, epicyclic, coarse_options):
+    """At 200 degC the oil, its viscosity and what follows from it; at 40 degC less."""
+    vary = "--vary", "operation.oil_inlet_temperature=40,200 degC"
+    done = epicyclic("sweep", "talbot-2012", *coarse_options, *vary, "-o", str(tmp_path / "s.csv"))
+    assert done.stderr == (
+        "2 of 2 points use a model outside its range, most at operation.oil_inlet_temperature = "
+        "200 degC; 'epicyclic run' there names them.\n"
+    )
+
+
 @pytest.mark.parametrize(
     ("output", "words"), [("s.xls", ".parquet"), ("missing/s.csv", "does not exist")]
 )

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pandas as pd
 import pytest
 import xarray as xr
@@ -24,6 +26,16 @@ def test_it_prints_writes_and_draws(epicyclic, tmp_path):
     assert table["time [s]"].iloc[-1] == 1800.0
     assert table["oil_temperature [degC]"].is_monotonic_increasing
     assert (tmp_path / "warm.png").stat().st_size > 10_000
+
+
+def test_warnings_are_those_of_the_start_and_of_the_settled_state(epicyclic):
+    hot = "--set", "operation.oil_inlet_temperature=110 degC", "--from", "15 degC"
+    done = epicyclic(*COLD, "--set", "thermal.ambient_temperature=105 degC", *hot)
+    assert done.returncode == 0, done.stderr
+    start, settled = done.stderr.split(" in the settled state: ")
+    assert "at the start: " in start
+    assert "The temperature is 15 °C, but oil atf-talbot-2012 is valid only from 25" in start
+    assert re.search(r"The temperature is 1\d\d to 1\d\d °C, but oil", settled)
 
 
 @pytest.mark.slow

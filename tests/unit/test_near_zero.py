@@ -12,6 +12,7 @@ import epicyclic as ep
 from epicyclic.cli.main import cli
 from epicyclic.study.maps.compute import resolving_zero
 from epicyclic.study.maps.tables import make_lookup
+from epicyclic.units import WATT
 
 COARSE = {"numerics.pocket_slices": 6, "numerics.pocket_steps": 10}
 
@@ -88,8 +89,8 @@ def test_a_loss_of_none_has_an_error_in_watts_alone():
     """Between -80 and 80 N m a train of given efficiencies loses nothing at no torque."""
     torques = ["-80 N*m", "80 N*m"]
     data = ep.loss_map("train-8hp70", ["1300 rpm"], torques, states=["1"], jobs=1)
-    error = float(data["total"].mean())
-    told = f"largest error of the total loss is {error:.2g} W at 1300 rpm and 0 N·m: 3 points"
+    error = WATT.text(float(data["total"].mean()), 2)
+    told = f"largest error of the total loss is {error} at 1300 rpm and 0 N·m: 3 points"
     assert told in data.attrs["torque_interpolation"]
     assert np.isfinite(data.attrs["torque_interpolation_error"])
 

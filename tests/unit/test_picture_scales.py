@@ -19,7 +19,13 @@ from epicyclic.show.page import Cell, Table
 from epicyclic.show.plots.arrangement import arrangement_of
 from epicyclic.show.plots.catalogue import draw, explorable, figure_of
 from epicyclic.show.plots.drawing import plot_gear_set
-from epicyclic.show.plots.loss_map import limits_of, limits_of_band, limits_of_half_width
+from epicyclic.show.plots.loss_map import (
+    limits_of,
+    limits_of_band,
+    limits_of_half_width,
+    map_line,
+    plot_map,
+)
 from epicyclic.show.plots.losses import banded, plot_loss_sum, plot_losses
 from epicyclic.show.plots.mesh import (
     mesh_figure,
@@ -60,6 +66,25 @@ def test_lines_of_all_panels_reach_the_same_height(pair_map):
     figure = figure_of(pair_map, "loss-over-speed")
     assert len({ax.get_ylim() for ax in figure.axes}) == 1
     assert figure.axes[0].get_ylim()[1] > float(pair_map["total"].max())
+
+
+def test_a_map_says_at_which_values_of_further_keys_it_is_shown(pair_map):
+    keys = {"planet_count": ("planet_count", [3, 5, 4], {"case_key": "planet.count"})}
+    data = xr.concat([pair_map] * 3, "planet_count").assign_coords(keys)
+    assert map_line(data) == f"{map_line(pair_map)}; number of planets 3, the first of 3"
+
+
+def test_efficiencies_without_a_line_of_their_own_get_even_ones(pair_map):
+    """99.31 to 99.49 %: between those that have lines."""
+    data = pair_map.isel(temperature=0)
+    share = np.linspace(0, 1, data["efficiency"].size).reshape(data["efficiency"].shape)
+    data = data.assign(efficiency=data["efficiency"].copy(data=0.9931 + 0.0018 * share))
+    ax = plot_map(data, "efficiency", axes())
+    bar = ax.collections[0].colorbar.ax
+    ticks = [float(tick.get_text()) for tick in bar.get_yticklabels()]
+    assert len(ticks) > 3
+    assert 99.31 <= min(ticks) < max(ticks) <= 99.49
+    assert len(ax.collections) > 1  # lines, too
 
 
 def test_bands_of_all_panels_have_one_scale():

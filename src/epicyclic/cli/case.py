@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -29,7 +29,7 @@ from epicyclic.cli.common import (
     tell_given,
     working,
 )
-from epicyclic.errors import EXIT_NO_SOLUTION, Status, one_problem
+from epicyclic.errors import EXIT_NO_SOLUTION, ConvergenceError, Status, one_problem
 from epicyclic.files import check_place
 from epicyclic.messages import either
 
@@ -280,8 +280,11 @@ def warm_up(
     Temperatures follow from the heat network, which needs thermal.oil_volume and, with a housing,
     thermal.housing.mass.
     """
+    from epicyclic.cli.many import warn_at
+    from epicyclic.machine.element import OIL
     from epicyclic.show.studies import warm_up_rows, warm_up_tables
     from epicyclic.study.maps.warm_up import warm_up as compute
+    from epicyclic.study.operating import AXES
     from epicyclic.study.sweeps.run import FORMATS, write_dataset
 
     if output is not None:
@@ -293,6 +296,12 @@ def warm_up(
     if output is not None:
         write_dataset(data, output, warm_up_rows)
     print_tables(warm_up_tables(data))
+    if cycle is None:
+        begin = f"{float(data['temperature'].sel(node=OIL)[0])!r} degC"
+        cold = {"models.temperatures": "inlet", AXES["temperature"]: begin}
+        with suppress(ConvergenceError):
+            warn_at(loaded.updated(cold), "at the start")
+            warn_at(loaded.updated({"models.temperatures": "network"}), "in the settled state")
     if plot is not None:
         from epicyclic.show.plots.heat_network import warm_up_figure
 

@@ -143,6 +143,7 @@ def sweep_writer(plan: SweepPlan, output: Path) -> Write:
     def write(rows: Rows) -> str:
         for key in dataset.idle_keys(plan, rows):
             echo(f"Note: no loss changes with {key}.", err=True)
+        tell_ranges(plan, rows)
         dataset.write_dataset(dataset.to_dataset(plan, rows), output)
         return points_written(rows, output)
 
@@ -362,23 +363,39 @@ def _print_thin_teeth(rows: Rows) -> None:
         )
 
 
+def tell_ranges(plan: SweepPlan, rows: Rows) -> None:
+    """Say at how many points models are used outside their ranges, and at which most of them."""
+    from epicyclic.losses.ranges import OUT_OF_RANGE
+
+    outside = [text.count(OUT_OF_RANGE) for text in rows.warnings]
+    if any(outside):
+        worst = plan.changes(outside.index(max(outside)))
+        echo(
+            f"{len(outside) - outside.count(0)} of {len(rows)} points use a model outside its "
+            f"range, most at {', '.join(f'{key} = {value}' for key, value in worst.items())}; "
+            "'epicyclic run' there names them.",
+            err=True,
+        )
+
+
 def tell_warnings(plan: MapPlan, rows: Rows) -> None:
-    """Say what `run` would warn of where most is lost."""
+    """Say what `run` would warn of where most is lost, and where ranges are left."""
     from numpy import nan_to_num
 
+    tell_ranges(plan, rows)
     worst = int(nan_to_num(rows.numbers("total"), nan=-1.0).argmax())
     if rows.warnings[worst]:
         warn_at(plan.case.updated(plan.changes(worst)))
 
 
-def warn_at(case: Case) -> None:
-    """Say what `run` warns of at this point, the one with the greatest loss."""
+def warn_at(case: Case, where: str = "at the greatest loss") -> None:
+    """Say what `run` warns of at this point."""
     from epicyclic.show.summary import first_warnings
     from epicyclic.study.solve import solve
 
     found = first_warnings(solve(case))
     if found.items:
-        head = f"{found.title} at the greatest loss: {point_of(case)}"
+        head = f"{found.title} {where}: {point_of(case)}"
         echo("\n• ".join((head, *found.items)), err=True)
 
 

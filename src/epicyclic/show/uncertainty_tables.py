@@ -149,11 +149,12 @@ LEAST = 0.02  # Largest share in the variance at any point, from which an input 
 
 def map_band_tables(data: xr.Dataset) -> Iterator[Table | Listing]:
     """The band of the total loss over speed and torque at each temperature, and what makes it."""
-    from epicyclic.show.plots.loss_map import at_temperatures  # which `run` need not load
+    from epicyclic.show.plots.loss_map import at_temperatures, first_values  # `run` loads none
 
+    title = ", ".join(filter(None, ("95 % band of the total loss, W", first_values(data))))
     for point in at_temperatures(data).values():
         total = point.sel(result="total").transpose("speed", "torque", ...)
-        yield grid_table(point, "95 % band of the total loss, W", _band_of(total))
+        yield grid_table(point, title, _band_of(total))
     yield _drivers(data)
     if not _too_few(data):
         yield Listing(tuple(_limits(data)), LIMITS)

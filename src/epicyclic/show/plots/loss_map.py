@@ -25,10 +25,12 @@ from epicyclic.show.plots.style import (
     label_of,
     labelled,
     legend_below,
+    place_text,
     span_text,
     title_of,
 )
-from epicyclic.study.operating import AXES, PLANE, STATE
+from epicyclic.study.bands.advice import in_few_words
+from epicyclic.study.operating import AXES, PLANE, STATE, key_of
 from epicyclic.units import format_number, unit_text
 
 Limits = tuple[float, float] | None
@@ -104,7 +106,17 @@ def map_line(data: xr.Dataset) -> str:
     axes = [name for name in AXES if name in data.dims]
     spans = [f"{name} {span_text(data[name])}" for name in axes]
     line = f"at the {data.attrs['reference_shaft']}: {', '.join(spans)}"
-    return "; ".join(filter(None, (line, left_out_line(data))))
+    return "; ".join(filter(None, (line, left_out_line(data), first_values(data, STATE))))
+
+
+def first_values(data: xr.Dataset, *panels: str) -> str:
+    """The values at which a map is shown, beside those of its `AXES` and `panels`; else empty."""
+    others = (data[dim] for dim in data["total"].dims if dim not in (*AXES, *panels))
+    return ", ".join(
+        f"{in_few_words(key_of(it))} {place_text(it[0])}, the first of {it.size}"
+        for it in others
+        if it.size > 1
+    )
 
 
 def limits_of(data: xr.Dataset, name: str) -> Limits:
@@ -142,9 +154,9 @@ def plot_map(
     )
     levels: list[float] | int = LEVELS
     if of_efficiency or name == HALF_WIDTH:
-        whole = MaxNLocator(LEVELS, integer=True)
-        ticks = EFFICIENCIES if of_efficiency else whole.tick_values(low, high)
-        levels = [float(one) for one in ticks if low <= one <= high]
+        even = MaxNLocator(LEVELS, integer=not of_efficiency).tick_values(low, high)
+        known = [one for one in EFFICIENCIES if of_efficiency and low <= one <= high]
+        levels = known or [float(f"{one:.9g}") for one in even if low <= one <= high]
         bar.set_ticks(levels, labels=[f"{one:g}" for one in levels])
         if of_efficiency:
             bar.ax.minorticks_off()
