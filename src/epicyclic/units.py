@@ -461,7 +461,7 @@ class Quantity:
     def _form(self, number: float | None = None) -> str:
         """How to write it; with the user's `number` if it is allowed and short enough."""
         if number is None or not self._is_allowed(number):
-            return f"give a number with its unit, {self.display}"
+            return "give a number" + (self.display and f" with its unit, {self.display}")
         text = format_number(number, 12) if isinstance(number, float) else str(number)
         return f'give it in {self.display}, such as "{text} {self.display}"'
 

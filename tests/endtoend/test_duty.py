@@ -331,6 +331,12 @@ def test_bad_csv_files_end_in_one_error(data, tmp_path, text, words):
         assert word in str(error.value)
 
 
+def test_durations_below_zero_are_all_that_is_wrong_where_they_sum_to_zero(data):
+    cycle = {"speed [rpm]": [900, 1700], "torque [N*m]": [30, 70], "duration [s]": [-7, 7]}
+    with pytest.raises(ep.InputError, match="1 problem.*\n.*must not be negative"):
+        ep.duty_cycle(data, cycle, "50 degC")
+
+
 def test_bad_parquet_files_end_in_one_error(data, tmp_path):
     path = tmp_path / "cycle.parquet"
     random_series(100).to_parquet(path)
@@ -496,6 +502,7 @@ def test_the_command_on_a_case_keeps_its_map(tmp_path, epicyclic):
         (("talbot-2012", "cycle.csv", "--map", "map.mat"), "must end in .nc"),
         (("talbot-2012", "cycle.csv", "-o", "out.txt"), "must end in .nc or .csv"),
         (("talbot-2012", "missing.csv"), "cannot be read"),
+        (("talbot-2012", "cycle.csv", "--map", "map.nc", "--distance", "0 km"), "distance > 0 km"),
         (("cycle.csv", "cycle.csv"), "cycle.csv"),
     ],
 )

@@ -55,6 +55,9 @@ def test_command_line_form(case, option, key, values):
         (["operation.speed=1:2:2.5 rpm"], "a,b,c or start:stop:count"),
         (["operation.speed=1:2:1000000000000 rpm"], "1000000 or less"),
         (["planet.count=3,4", "planet.count=5,6"], "again"),
+        (["operation.speed=1000,,2000 rpm"], "has an empty value"),
+        (["planet.roughness=shaved, ,ground"], "has an empty value"),
+        (["planet.count=3,4,"], "has an empty value"),
     ],
 )
 def test_unreadable_option(case, options, words):

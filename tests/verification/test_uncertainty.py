@@ -441,6 +441,20 @@ def test_limits_without_the_value_of_the_case_are_told(case, table, limits):
     assert any("leave out" in it for it in sources) == bool(limits)
 
 
+@pytest.mark.parametrize(
+    ("table", "words"),
+    [
+        ({"normal": "nan %"}, "is not a number"),
+        ({"tolerance": ["-inf %", "3 %"]}, "is not a number"),
+        ({"tolerance": ["0 N*m", "0 N*m"]}, "must give the lower limit, then a higher one"),
+    ],
+)
+def test_a_width_of_none_is_refused(case, table, words):
+    with pytest.raises(InputError, match=words) as caught:
+        case.updated({"uncertainty": {"operation.torque": table}})
+    assert [problem.key for problem in caught.value.problems] == ['uncertainty."operation.torque"']
+
+
 def test_an_oil_given_by_its_name_has_no_keys_of_its_own():
     key = "lubricant.oil.density_slope.value"
     case = ep.load_case("talbot-2012-pair")

@@ -438,7 +438,11 @@ def parse_changes(options: Sequence[str]) -> dict[str, Any]:
             problems.append(Problem("--set", f'"{option}"', "must be KEY=VALUE.", remedy))
         else:
             value = parse_value(text.strip()) if text.strip() else None
-            changes |= dict.fromkeys(_alternatives(key.strip()), value)
+            keys = dict.fromkeys(_alternatives(key.strip()), value)
+            again = (f"changes {key} again." for key in keys if key in changes)
+            once = "Give each key once."
+            problems += [Problem("--set", f'"{option}"', allowed, once) for allowed in again]
+            changes |= keys
     raise_any(problems, "the command")
     return changes
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from functools import cache
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
@@ -222,14 +223,14 @@ def _difference(stated: str | float, value: float, quantity: Quantity | None) ->
 
 
 def _number(stated: str | float) -> float:
-    try:
-        return float(stated)
-    except ValueError:
-        raise PydanticCustomError(
-            "number",
-            "{what} is not a number; it must be a number, or a percentage of the value",
-            {"what": written(stated), "remedy": 'for example "12 %"'},
-        ) from None
+    with suppress(ValueError):
+        if math.isfinite(number := float(stated)):
+            return number
+    raise PydanticCustomError(
+        "number",
+        "{what} is not a number; it must be a number, or a percentage of the value",
+        {"what": written(stated), "remedy": 'for example "12 %"'},
+    )
 
 
 def _impossible(parameter: Parameter, kind: Kind, spread: tuple[float, ...]) -> Problem | None:
@@ -244,7 +245,7 @@ def _impossible(parameter: Parameter, kind: Kind, spread: tuple[float, ...]) -> 
         return None
     low, high = spread
     if low >= high:
-        return Problem(name, "", "must give the lower limit first.", "Exchange the limits.")
+        return Problem(name, "", "must give the lower limit, then a higher one.", "Correct them.")
     if high <= parameter.low or low >= parameter.high:
         allowed = f"lies outside the range of this key, {parameter.low:g} to {parameter.high:g}."
         return Problem(name, "", allowed, "Correct the limits.")

@@ -130,24 +130,28 @@ def duty_cycle(
     """
     import xarray as xr
 
-    runner = Runner(jobs, dask, journal=journal)
+    runner, covered = Runner(jobs, dask, journal=journal), kilometres(distance)
     checked = open_cycle(cycle, form=form)
     celsius = parse_temperatures(checked, temperature)
     data = map_or_case
     if not isinstance(data, xr.Dataset):
         data = cycle_map(as_case(data), checked, celsius, replace(runner, progress=progress))
     sums = add_up(data, checked, celsius, clamp=clamp, samples=samples)
-    return with_distance(make_duty(data, checked, sums, runner), distance)
+    return with_distance(make_duty(data, checked, sums, runner), covered)
 
 
-def with_distance(result: xr.Dataset, distance: Any) -> xr.Dataset:
-    """With the energy lost for each distance, if one is given; raises `InputError` for another."""
-    if distance is None:
-        return result
+def kilometres(distance: Any) -> float | None:
+    """A distance, if one is given; raises `InputError` for what is no distance. [km]"""
     try:
-        covered = _DISTANCE.to_display(_DISTANCE.parse(distance))
+        return None if distance is None else _DISTANCE.to_display(_DISTANCE.parse(distance))
     except PydanticCustomError as error:
         raise InputError([refused(error, "distance", written(distance))], "the command") from None
+
+
+def with_distance(result: xr.Dataset, covered: float | None) -> xr.Dataset:
+    """With the energy lost for each distance, if `kilometres` are given."""
+    if covered is None:
+        return result
     lost = result["energy_lost"].sum(("mode", "component")) / _KJ_PER_WH / covered
     return result.assign(
         distance=((), covered, {"long_name": "distance", "units": "km"}),

@@ -595,10 +595,12 @@ def _values(case: Case, key: str, text: str) -> Iterator[Any]:
         return
     if ":" in text and quantity is not None:
         raise ValueError("must be a,b,c or start:stop:count", "Give all three, and a unit.")
-    items = [item.strip() for item in text.split(",") if item.strip()]
-    if items and quantity is not None and quantity.si and all(map(_is_bare, items)):
+    items = [item.strip() for item in text.split(",")]
+    if not all(items):
+        raise ValueError("has an empty value", "Fill it, or delete a comma.")
+    if quantity is not None and quantity.si and all(map(_is_bare, items)):
         raise lacking
-    shared = _unit_of(items[-1]) if items else ""
+    shared = _unit_of(items[-1])
     for item in items:
         if _LEADING_ZERO.match(item):
             raise ValueError(f'"{item}" is no value: commas divide values, not digits of one')
