@@ -333,7 +333,7 @@ def test_bad_csv_files_end_in_one_error(data, tmp_path, text, words):
 
 def test_durations_below_zero_are_all_that_is_wrong_where_they_sum_to_zero(data):
     cycle = {"speed [rpm]": [900, 1700], "torque [N*m]": [30, 70], "duration [s]": [-7, 7]}
-    with pytest.raises(ep.InputError, match="1 problem.*\n.*must not be negative"):
+    with pytest.raises(ep.InputError, match=r"1 problem.*\n.*must not be negative"):
         ep.duty_cycle(data, cycle, "50 degC")
 
 

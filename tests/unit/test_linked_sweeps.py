@@ -334,7 +334,7 @@ def test_braces_stand_for_several_keys():
         "planet.teeth": None,
         "x.y.z": "4 mm",
     }
-    with pytest.raises(ep.InputError, match="--set = .sun.b=5.: changes sun.b again"):
+    with pytest.raises(ep.InputError, match="changes sun.b again".replace(".", r"\.")):
         parse_changes(["{sun,ring}.{a,b}=3", "sun.b=5"])
 
 

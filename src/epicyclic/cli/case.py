@@ -281,10 +281,8 @@ def warm_up(
     thermal.housing.mass.
     """
     from epicyclic.cli.many import warn_at
-    from epicyclic.machine.element import OIL
     from epicyclic.show.studies import warm_up_rows, warm_up_tables
     from epicyclic.study.maps.warm_up import warm_up as compute
-    from epicyclic.study.operating import AXES
     from epicyclic.study.sweeps.run import FORMATS, write_dataset
 
     if output is not None:
@@ -297,8 +295,8 @@ def warm_up(
         write_dataset(data, output, warm_up_rows)
     print_tables(warm_up_tables(data))
     if cycle is None:
-        begin = f"{float(data['temperature'].sel(node=OIL)[0])!r} degC"
-        cold = {"models.temperatures": "inlet", AXES["temperature"]: begin}
+        begin = f"{float(data['temperature'].sel(node='oil')[0])!r} degC"
+        cold = {"models.temperatures": "inlet", "operation.oil_inlet_temperature": begin}
         with suppress(ConvergenceError):
             warn_at(loaded.updated(cold), "at the start")
             warn_at(loaded.updated({"models.temperatures": "network"}), "in the settled state")

@@ -368,14 +368,11 @@ def tell_ranges(plan: SweepPlan, rows: Rows) -> None:
     from epicyclic.losses.ranges import OUT_OF_RANGE
 
     outside = [text.count(OUT_OF_RANGE) for text in rows.warnings]
-    if any(outside):
-        worst = plan.changes(outside.index(max(outside)))
-        echo(
-            f"{len(outside) - outside.count(0)} of {len(rows)} points use a model outside its "
-            f"range, most at {', '.join(f'{key} = {value}' for key, value in worst.items())}; "
-            "'epicyclic run' there names them.",
-            err=True,
-        )
+    if count := sum(map(bool, outside)):
+        worst = plan.changes(outside.index(max(outside))).items()
+        told = f"{count} of {len(rows)} points use a model outside its range, most at"
+        place = ", ".join(f"{key} = {value}" for key, value in worst)
+        echo(f"{told} {place}; 'epicyclic run' there names them.", err=True)
 
 
 def tell_warnings(plan: MapPlan, rows: Rows) -> None:

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from rich.console import RenderableType
 
-from epicyclic.case.tables.uncertainty import MODEL_FORM
 from epicyclic.messages import one_line
 from epicyclic.result.result import Result, in_words
 from epicyclic.show.page import MISSING, Cell, KeyFigure, Listing, Table, aligned, number, shown
@@ -231,17 +230,12 @@ def _causes(
 
 
 def _too_few(data: xr.Dataset) -> tuple[str, ...]:
-    """What to do where no curves go through the samples: they are fewer than the columns of these.
-
-    See `epicyclic.study.bands.samples.fit_curves`.
-    """
+    """What to do where there are too few samples for curves, which have up to 1 + 2 d columns."""
     explained = data.get("explained", data.get("curves_explain"))
     if explained is None or explained.notnull().any():
         return ()
-    squares = (key for key in map(str, data["input"].values) if not key.startswith(MODEL_FORM))
-    half = (1 + data.sizes["input"] + len([*squares])) // 2
     count = int(data.attrs["samples"])
-    more = max(2 * count, 1 << half.bit_length())
+    more = max(2 * count, 1 << data.sizes["input"].bit_length())
     return (f"{count} samples are too few to tell the causes. Take {more} or more.",)
 
 

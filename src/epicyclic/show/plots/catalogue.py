@@ -15,8 +15,6 @@ import numpy as np
 import xarray as xr
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.axis import Axis
-from matplotlib.category import StrCategoryFormatter
 from matplotlib.collections import FillBetweenPolyCollection, QuadMesh, TriMesh
 from matplotlib.colors import to_hex, to_rgba
 from matplotlib.container import BarContainer
@@ -480,7 +478,7 @@ def _layout(ax: Axes) -> dict[str, Any]:
         layout[name] = AXIS | {
             "title": {"text": _escaped(axis.label.get_text()).replace("\n", "<br>")}
             | {"standoff": 8, "font": FONT},
-            "type": "category" if _has_names(axis) else "log" if is_log else "linear",
+            "type": "category" if axis.have_units() else "log" if is_log else "linear",
             "range": _list(np.log10(ends) if is_log else ends),
         }
     labels = _bar_labels(ax)
@@ -488,10 +486,6 @@ def _layout(ax: Axes) -> dict[str, Any]:
         ticks = {"tickvals": list(labels), "ticktext": list(labels.values())}
         layout["yaxis"] |= ticks | {"tickmode": "array"}
     return layout
-
-
-def _has_names(axis: Axis) -> bool:
-    return isinstance(axis.get_major_formatter(), StrCategoryFormatter)
 
 
 def _bar_labels(ax: Axes) -> dict[float, str]:
@@ -544,7 +538,6 @@ def _line(ax: Axes, line: Line2D, labels: tuple[str, str]) -> dict[str, Any] | N
     if line.get_transform() != ax.transData:
         return None
     style, nothing = line.get_linestyle(), ("None", "", " ", None)
-    hover = _hover(*labels)
     parts = {"lines": style, "markers": line.get_marker()}
     return {
         "type": "scatter",
@@ -554,14 +547,14 @@ def _line(ax: Axes, line: Line2D, labels: tuple[str, str]) -> dict[str, Any] | N
         "y": _list(line.get_ydata()),
         "line": {"color": to_hex(line.get_color()), "dash": DASHES.get(str(style), "dash")},
         "marker": {"size": 4},
-        "hovertemplate": hover.replace("{x:.5~g}", "{x}") if _has_names(ax.xaxis) else hover,
+        "hovertemplate": _hover(*labels, named=ax.xaxis.have_units()),
     }
 
 
-def _hover(*labels: str) -> str:
-    """What is told of a place: labels with values, and the name beside them."""
-    axes = zip(labels, "xyz", strict=False)
-    return "<br>".join(f"{label}: %{{{axis}:.5~g}}" for label, axis in axes)
+def _hover(*labels: str, named: bool = False) -> str:
+    """What is told of a place: labels with values, and the name beside them; x may be names."""
+    axes = zip(labels, ("x" if named else "x:.5~g", "y:.5~g", "z:.5~g"), strict=False)
+    return "<br>".join(f"{label}: %{{{axis}}}" for label, axis in axes)
 
 
 def _area(area: FillBetweenPolyCollection, *, is_band: bool) -> dict[str, Any]:
@@ -699,9 +692,9 @@ def _levels(lines: ContourSet, field: Mapping[str, Any]) -> Iterator[dict[str, A
 
 def _list(values: Any) -> list[Any]:
     """Plain numbers of few digits, None for what is none; names as they are."""
-    if np.asarray(values).dtype.kind == "U":
-        return [_escaped(name) for name in np.asarray(values).tolist()]
-    numbers = np.asarray(values, dtype=float).ravel().tolist()
+    if (array := np.asarray(values)).dtype.kind == "U":
+        return [*map(_escaped, array.tolist())]
+    numbers = array.astype(float).ravel().tolist()
     return [float(f"{one:.{DIGITS}g}") if math.isfinite(one) else None for one in numbers]
 
 
