@@ -100,17 +100,14 @@ def duty(
     celsius = parse_temperatures(checked, temperatures or None)
     if runner.shard is not None:
         from epicyclic.study.maps.duty import DutyPlan, cycle_plan, digest_of
-        from epicyclic.study.table_file import AS_IT_IS
 
         case = load_with(map_or_case, changes)
         digest = digest_of(Path(cycle))
         points = cycle_plan(case, checked, celsius)
         plan = DutyPlan(points.case, points.axes, digest=digest, celsius=celsius, clamp=clamp)
         file = output or Path(str(json_file))
-        how: dict[str, Any] = {"cycle": cycle, "folder": str(Path.cwd())}
-        how |= {} if map_file is None else {"map_file": str(map_file)}
-        how |= {} if distance is None else {"distance": distance}
-        how |= {} if form == AS_IT_IS else {"form": asdict(form)}
+        how: dict[str, Any] = {"cycle": cycle, "folder": str(Path.cwd()), "distance": distance}
+        how |= {"map_file": map_file and str(map_file), "form": asdict(form)}
         compute(plan, file, runner, duty_writer(plan, file, **how), **how)
         return
     data = _map(map_or_case, changes, checked, celsius, map_file, runner)
@@ -228,16 +225,13 @@ def _map(
 ) -> xr.Dataset:
     """The map that is named, or one of the case that is."""
     from epicyclic.show.record import open_map
-    from epicyclic.study.maps.compute import to_map
-    from epicyclic.study.maps.duty import cycle_plan
+    from epicyclic.study.maps.duty import cycle_map
 
     if Path(map_or_case).suffix == _MAP_SUFFIX:
         return open_map(map_or_case)
     case = load_with(map_or_case, changes)
     with progress_bar("points of the map") as progress:
-        plan = cycle_plan(case, cycle, celsius)
-        rows = replace(runner, progress=progress).within(plan).run(plan)
-    data = to_map(plan, rows)
+        data = cycle_map(case, cycle, celsius, replace(runner, progress=progress))
     if map_file is not None:
         _write_map(data, map_file)
     return data

@@ -426,9 +426,7 @@ def map_plan(
         allowed = "has no effect, because every loss of the train is given."
         problems.append(Problem("temperature", "", allowed, "Remove it."))
     raise_any(problems, "the map")
-    given: dict[str, Iterable[Any]] = {}
-    if chosen:
-        given[STATE_KEY] = chosen
+    given: dict[str, Iterable[Any]] = {STATE_KEY: chosen} if chosen else {}
     if case.computed:
         if temperature is None:
             temperature = [case.inputs()["operation"]["oil_inlet_temperature"]]

@@ -324,17 +324,10 @@ def notes_on(table: Measurements, computed: Computed) -> Iterator[str]:
     if failed:
         line, reason = failed[0]
         yield f"{len(failed)} of {len(table)} points could not be computed; line {line}: {reason}"
-    warned = {
-        line: text.split(" | ")
-        for line, text in zip(table.lines, computed.warnings, strict=True)
-        if text
-    }
-    missing = (note for notes in warned.values() for note in notes if note.startswith(NOT_INCLUDED))
-    yield from dict.fromkeys(missing)
-    flagged = [
-        line for line, notes in warned.items() if any(it.startswith(OUT_OF_RANGE) for it in notes)
-    ]
-    if flagged:
+    warned = [text.split(" | ") for text in computed.warnings]
+    yield from dict.fromkeys(it for its in warned for it in its if it.startswith(NOT_INCLUDED))
+    outside = (any(it.startswith(OUT_OF_RANGE) for it in its) for its in warned)
+    if flagged := [*itertools.compress(table.lines, outside)]:
         yield (
             f"{len(flagged)} of {len(table)} points use a model outside its range, the first in "
             f"line {flagged[0]}; 'epicyclic run' at its conditions names the model."
