@@ -159,10 +159,8 @@ def test_mistakes_name_the_place(read, text, words):
     assert re.search(words, found), found
 
 
-@pytest.mark.parametrize("names", ["total+sun_drag", "sun_drag+sun_drag",
-                                   "load_dependent+sun_mesh_sliding"])  # fmt: skip
+@pytest.mark.parametrize("names", ["total+sun_drag", "sun_drag+sun_drag"])
 def test_a_loss_counts_once(read, names):
-    """Also in each row; what depends on the load holds no drag."""
     column = GOOD.replace("run", "component").replace(",1\n", f",{names}\n")
     text = column.replace(",2\n", ",load_dependent+sun_drag\n")
     (problem,) = problems_of(read, text)

@@ -440,8 +440,7 @@ def parse_changes(options: Sequence[str]) -> dict[str, Any]:
             value = parse_value(text.strip()) if text.strip() else None
             keys = dict.fromkeys(_alternatives(key.strip()), value)
             again = (f"changes {key} again." for key in keys if key in changes)
-            once = "Give each key once."
-            problems += [Problem("--set", f'"{option}"', allowed, once) for allowed in again]
+            problems += [Problem("--set", f'"{option}"', told, "Give it once.") for told in again]
             changes |= keys
     raise_any(problems, "the command")
     return changes

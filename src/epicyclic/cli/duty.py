@@ -88,10 +88,9 @@ def duty(
     --json, which 'epicyclic merge' writes.
     """
     from epicyclic.study.maps.cycle import open_cycle
-    from epicyclic.study.maps.duty import kilometres, parse_temperatures, with_distance
+    from epicyclic.study.maps.duty import parse_temperatures, with_distance
 
     _check_options(map_or_case, changes, map_file, output, runner)
-    covered = kilometres(distance)
     if runner.shard is not None:
         _check_shard(output, json_file, journal)
     runner = replace(runner, journal=journal)
@@ -111,7 +110,7 @@ def duty(
         compute(plan, file, runner, duty_writer(plan, file, **how), **how)
         return
     data = _map(map_or_case, changes, checked, celsius, map_file, runner)
-    result = with_distance(_result(data, checked, celsius, clamp, runner), covered)
+    result = with_distance(_result(data, checked, celsius, clamp, runner), distance)
     if output is not None:
         _write_table(result, output)
     _show(result, json_file)
@@ -141,15 +140,14 @@ def duty_writer(
         from epicyclic.show.studies import duty_json
         from epicyclic.study.maps.compute import to_map
         from epicyclic.study.maps.cycle import open_cycle
-        from epicyclic.study.maps.duty import kilometres, with_distance
+        from epicyclic.study.maps.duty import with_distance
         from epicyclic.study.sweeps.runner import HERE
         from epicyclic.study.table_file import TableForm
 
         read = open_cycle(path, form=TableForm(**(form or {})))
         named = replace(read, source=replace(read.source, name=cycle))
         data = to_map(plan, rows)
-        result = _result(data, named, plan.celsius, plan.clamp, HERE)
-        result = with_distance(result, kilometres(distance))
+        result = with_distance(_result(data, named, plan.celsius, plan.clamp, HERE), distance)
         if map_file is not None:
             _write_map(data, Path(map_file))
         if output.suffix == _JSON:

@@ -168,13 +168,12 @@ def _cycle_study(
     with progress_bar("rows read") as progress:
         checked = open_cycle(cycle, progress)
     celsius = parse_temperatures(checked, None if temperature is None else [temperature])
-    data = source
-    if isinstance(data, Case):
+    if isinstance(source, Case):
         with progress_bar("points of the map") as progress:
-            data = cycle_map(data, checked, celsius, replace(runner, progress=progress))
+            source = cycle_map(source, checked, celsius, replace(runner, progress=progress))
     with progress_bar("changed inputs") as progress:
         own = replace(runner, progress=progress)
-        return cycle_study(data, checked, celsius, samples, points, seed, own)
+        return cycle_study(source, checked, celsius, samples, points, seed, own)
 
 
 def _draw(data: xr.Dataset, plot: Path) -> None:

@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 LIMITS = "Limits of confidence"
+CAUSES = "Causes of the uncertainty of the total loss"
 FEW = 2  # Limits that a short list names.
 WORTH = 0.98  # Part of the band above which a measurement is not worth while. [1]
 
@@ -154,8 +155,9 @@ def map_band_tables(data: xr.Dataset) -> Iterator[Table | Listing]:
     for point in at_temperatures(data).values():
         total = point.sel(result="total").transpose("speed", "torque", ...)
         yield grid_table(point, title, _band_of(total))
-    yield _drivers(data)
-    if not _too_few(data):
+    few = _too_few(data)
+    yield Listing(few, CAUSES) if few else _drivers(data)
+    if not few:
         yield Listing(tuple(_limits(data)), LIMITS)
 
 
@@ -219,14 +221,11 @@ def _drivers(data: xr.Dataset) -> Table | Listing:
         f"is weighted with the loss. The curves explain {percent(known)} or more of it at every "
         "point."
     )
-    return _causes(("", "mean share", "largest", "at"), rows, note, *_too_few(data))
+    return _causes(("", "mean share", "largest", "at"), rows, note)
 
 
-def _causes(
-    head: tuple[str, ...], rows: Sequence[tuple[Cell, ...]], note: str, *without: str
-) -> Table | Listing:
-    title = "Causes of the uncertainty of the total loss"
-    return Table(head, tuple(rows), title, note=note) if rows else Listing(without, title)
+def _causes(head: tuple[str, ...], rows: Sequence[tuple[Cell, ...]], note: str) -> Table | Listing:
+    return Table(head, tuple(rows), CAUSES, note=note) if rows else Listing((), CAUSES)
 
 
 def _too_few(data: xr.Dataset) -> tuple[str, ...]:
@@ -438,6 +437,5 @@ def _of_points(data: xr.Dataset) -> Iterator[str]:
             f"Cycle: {data.attrs['cycle']}; {data.attrs['points']} points represent it, so u_c of "
             f"the total has a standard error of {percent(error / spread, 0)}."
         )
-    known = percent(float(data["curves_explain"]))
-    curves = f"Shares from curves through the samples, which explain {known} of the variance of"
-    yield from _too_few(data) or (f"{curves} the total.",)
+    known = f"which explain {percent(float(data['curves_explain']))} of the variance of the total"
+    yield from _too_few(data) or (f"Shares from curves through the samples, {known}.",)

@@ -111,12 +111,10 @@ def map_line(data: xr.Dataset) -> str:
 
 def first_values(data: xr.Dataset, *panels: str) -> str:
     """The values at which a map is shown, beside those of its `AXES` and `panels`; else empty."""
-    others = (data[dim] for dim in data["total"].dims if dim not in (*AXES, *panels))
-    return ", ".join(
-        f"{in_few_words(key_of(it))} {place_text(it[0])}, the first of {it.size}"
-        for it in others
-        if it.size > 1
-    )
+    names = (dim for dim in data["total"].dims if dim not in (*AXES, *panels))
+    several = (data[name] for name in names if data.sizes[name] > 1)
+    first = "{} {}, the first of {}".format
+    return ", ".join(first(in_few_words(key_of(it)), place_text(it[0]), it.size) for it in several)
 
 
 def limits_of(data: xr.Dataset, name: str) -> Limits:

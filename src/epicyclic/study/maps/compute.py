@@ -264,9 +264,8 @@ def torque_interpolation(data: xr.Dataset, case: Case) -> dict[str, str | float]
             found.append(float(f"{error[is_part].max(initial=0.0):.2g}"))
             size = WATT.text(watts[worst], 2)
             size = f"{100 * error[worst]:.2g} % ({size})" if is_part[worst] else size
-            texts.append(
-                f"{size} at {format_number(speed)} rpm and {torque_text(float(own[worst]), 3)}"
-            )
+            at = f"{format_number(speed)} rpm and {torque_text(float(own[worst]), 3)}"
+            texts.append(f"{size} at {at}")
     if not found:
         return {}
     return {
@@ -463,22 +462,19 @@ def _states(case: Case, chosen: Iterable[Any] | None) -> tuple[list[str], list[P
             return [], []
         allowed = "cannot be chosen, because the case has none."
         return [], [Problem("states", "", allowed, "Remove them.")]
-    if chosen is None:
-        left_out = states_left_out(case)
-        able = [name for name in known if name not in left_out]
-        return able, [] if able else [_unable(*item) for item in left_out.items()]
-    names = [str(name) for name in ([chosen] if isinstance(chosen, str) else chosen)]
+    given = known if chosen is None else [chosen] if isinstance(chosen, str) else chosen
+    names = [str(name) for name in given]
     problems = []
     for name in (it for it in dict.fromkeys(names) if it not in known):
         remedy = did_you_mean(name, known) or f"Choose one of {', '.join(known)}."
         problems.append(Problem("states", written(name), "is not a state of the train.", remedy))
     left_out = states_left_out(case, [name for name in names if name in known])
-    problems += [_unable(*item) for item in left_out.items()]
+    able = [name for name in names if name not in left_out]
+    if chosen is None and able:
+        return able, []
+    remedy = "Leave this state out."
+    problems += [Problem("states", written(it), why, remedy) for it, why in left_out.items()]
     return names, problems
-
-
-def _unable(name: str, reason: str) -> Problem:
-    return Problem("states", written(name), reason, "Leave this state out.")
 
 
 def states_left_out(case: Case, names: Iterable[str] | None = None) -> dict[str, str]:

@@ -365,9 +365,8 @@ class _Checks:
             found.append(Problem("", "", allowed, "Give more rows."))
         for name in (DURATION, SHARE):
             whole = self.sums.get(name, 0.0)
-            sound = _LEAST_SUM <= whole <= _LARGEST_SUM or self.low.get(name, 0.0) < 0  # told
-            if not self.rows or name not in self.columns or sound:
-                continue
+            if self.low.get(name, -1.0) < 0 or _LEAST_SUM <= whole <= _LARGEST_SUM:
+                continue  # there is none, or its faults are told
             allowed, given = "is zero in all rows.", ""
             if whole:
                 given, allowed = (

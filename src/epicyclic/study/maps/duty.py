@@ -130,28 +130,24 @@ def duty_cycle(
     """
     import xarray as xr
 
-    runner, covered = Runner(jobs, dask, journal=journal), kilometres(distance)
+    runner = Runner(jobs, dask, journal=journal)
     checked = open_cycle(cycle, form=form)
     celsius = parse_temperatures(checked, temperature)
     data = map_or_case
     if not isinstance(data, xr.Dataset):
         data = cycle_map(as_case(data), checked, celsius, replace(runner, progress=progress))
     sums = add_up(data, checked, celsius, clamp=clamp, samples=samples)
-    return with_distance(make_duty(data, checked, sums, runner), covered)
+    return with_distance(make_duty(data, checked, sums, runner), distance)
 
 
-def kilometres(distance: Any) -> float | None:
-    """A distance, if one is given; raises `InputError` for what is no distance. [km]"""
+def with_distance(result: xr.Dataset, distance: Any) -> xr.Dataset:
+    """With the energy lost for each distance, if one is given; raises `InputError` for another."""
+    if distance is None:
+        return result
     try:
-        return None if distance is None else _DISTANCE.to_display(_DISTANCE.parse(distance))
+        covered = _DISTANCE.to_display(_DISTANCE.parse(distance))
     except PydanticCustomError as error:
         raise InputError([refused(error, "distance", written(distance))], "the command") from None
-
-
-def with_distance(result: xr.Dataset, covered: float | None) -> xr.Dataset:
-    """With the energy lost for each distance, if `kilometres` are given."""
-    if covered is None:
-        return result
     lost = result["energy_lost"].sum(("mode", "component")) / _KJ_PER_WH / covered
     return result.assign(
         distance=((), covered, {"long_name": "distance", "units": "km"}),

@@ -20,7 +20,6 @@ from epicyclic.messages import did_you_mean, misspelt, one_line, sentence
 from epicyclic.schema.fields import entry_of, is_text, quantity_of
 from epicyclic.schema.read import parse_value
 from epicyclic.study.operating import AXES, NAMES, OPERATING, STATE, STATE_KEY, shaft_power
-from epicyclic.study.solve import solve
 from epicyclic.study.sweeps.axes import known_field
 from epicyclic.study.table_file import HEADER, Grid, missing_remedy, unit_problem
 from epicyclic.units import NEWTON_METRE, NUMBER, RPM, WATT, Quantity, format_number
@@ -130,6 +129,7 @@ def parse_measurements(
     conditions = {
         name: _numbers(columns.get(name), quantity_of(*known_field(case, key)), problems)
         for name, key in _conditions(case).items()
+        if name != STATE
     }
     stated = _Stated(columns, conditions, case, problems)
     loss = stated.loss()
@@ -138,7 +138,7 @@ def parse_measurements(
     if stated.by_two_torques and set(components) != {"total"}:
         allowed = "is stated by an efficiency or two torques only if it is the total."
         problems.found.append(Problem("component", first_of(components), allowed, "Give losses."))
-    own = _conditions(case) | _states(case)
+    own = _conditions(case)
     keys = {
         own.get(name, name): column
         for name, column in columns.items()
@@ -166,18 +166,14 @@ def parse_measurements(
 
 
 def _conditions(case: Case) -> dict[str, str]:
-    """The conditions that a table of a case must have, and their keys."""
-    return {key: name for key, name in AXES.items() if case.computed or key != "temperature"}
-
-
-def _states(case: Case) -> dict[str, str]:
-    """The column of states and its key, of a train that has any."""
-    return {STATE: STATE_KEY} if case.states else {}
+    """The conditions that a table of a case must have and may have, and their keys."""
+    found = {key: name for key, name in AXES.items() if case.computed or key != "temperature"}
+    return found | ({STATE: STATE_KEY} if case.states else {})
 
 
 def _columns(grid: Grid, case: Case, problems: _Problems) -> dict[str, _Column]:
     """The columns by name; the conditions under their short names."""
-    own = _conditions(case) | _states(case)
+    own = _conditions(case)
     columns: dict[str, _Column] = {}
     for number, header in enumerate(grid.header):
         match = HEADER.fullmatch(header)
@@ -226,7 +222,7 @@ def _name_problem(column: _Column, case: Case) -> Problem | None:
     """What is wrong with the name of a column; names without dots may be labels of the user."""
     name, shown = column.name, one_line(column.header)
     if "." not in name:
-        own = (*_OWN, *_states(case))
+        own = (*_OWN, *_conditions(case))
         nearest = "" if name in own else misspelt(name, own)
         if nearest:
             return Problem(shown, "", "is not a known column.", f'Did you mean "{nearest}"?')
@@ -416,11 +412,8 @@ def _no_sum(text: str, case: Case) -> tuple[str, str] | None:
     names, parts = loss_names(case), parts_of(text)
     if not set(parts) <= set(names):
         return "is not a loss.", f"The losses are {', '.join(names)}; join several with +."
-    sums = {LOAD_DEPENDENT, "load_independent"}.intersection(parts)
-    groups = solve(case).groups if sums and len(parts) > len(sums) else {}
-    inside = any(groups.get(part, "").replace("-", "_") in sums for part in parts)
-    if inside or len(set(parts)) < len(parts) or ("total" in parts and len(parts) > 1):
-        return "counts a loss twice.", "Name each once; load_dependent and total are sums."
+    if len(set(parts)) < len(parts) or ("total" in parts and len(parts) > 1):
+        return "counts a loss twice.", "Name each once; total is the sum of all."
     return None
 
 
