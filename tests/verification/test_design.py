@@ -361,7 +361,8 @@ def test_a_polished_design_meets_the_limits_and_the_front_is_told_anew(monkeypat
     own = sizes(task, found.table.loc[[number]].dropna(axis=1))
     assert min(it[0] for it in own.margins.values()) >= 1 - 1e-9
     assert found.table.loc[number, "mass"] == pytest.approx(own.mass[0], rel=1e-12)
-    assert found.table.loc[number, "shift"] > (start := found.table.loc[number, "polished_shift"])
+    start = found.table.loc[number, "polished_shift"]
+    assert found.table.loc[number, "shift"] > start
     before = sizes(task, found.table.loc[[number]].dropna(axis=1).assign(shift=start))
     assert own.mass[0] <= before.mass[0]  # the other objective is no worse
     values = found.table.loc[found.fronts, ["loss", "mass"]].to_numpy()

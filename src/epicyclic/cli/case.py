@@ -11,24 +11,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from epicyclic.cli.common import (
-    beside,
-    case_options,
-    check_ending,
-    draw,
-    echo,
-    file_option,
-    json_option,
-    load_with,
-    output_option,
-    plot_option,
-    point_of,
-    print_tables,
-    progress_bar,
-    show,
-    tell_given,
-    working,
-)
+from epicyclic.cli import common
 from epicyclic.errors import EXIT_NO_SOLUTION, ConvergenceError, Status, one_problem
 from epicyclic.files import check_place
 from epicyclic.messages import either
@@ -42,9 +25,9 @@ if TYPE_CHECKING:
 
 
 @click.command()
-@case_options
-@json_option
-@file_option(
+@common.case_options
+@common.json_option
+@common.file_option(
     "--save", help="Keep the result with all its fields in FILE.nc, for reports and plots."
 )
 @click.option("--details", is_flag=True, help="Print all figures, models, warnings and sources.")
@@ -60,7 +43,7 @@ def run(
     from epicyclic.study.bands.study import quick_known
     from epicyclic.study.solve import solve
 
-    loaded = load_with(case, changes)
+    loaded = common.load_with(case, changes)
     if save is not None:
         from epicyclic.show.record import check_result_output, record, save_result
 
@@ -77,9 +60,9 @@ def run(
             return result_tables(result, tuple(remarks(loaded, result)), band_texts(known), further)
         return first_screen(result, known)
 
-    show(tables, lambda: result_json(result, known), json_file)
+    common.show(tables, lambda: result_json(result, known), json_file)
     if result.status is not Status.CONVERGED:
-        echo(result.notes[0], err=True)
+        common.echo(result.notes[0], err=True)
         sys.exit(EXIT_NO_SOLUTION)
 
 
@@ -89,15 +72,15 @@ def telling_contacts(case: Case) -> Iterator[None]:
     if case.models.friction == "ehl-direct":
         from epicyclic.losses.friction import contact_progress
 
-        with progress_bar("contacts of the mesh") as progress, contact_progress(progress):
+        with common.progress_bar("contacts of the mesh") as progress, contact_progress(progress):
             yield
     else:
-        with working():  # pockets may take minutes too
+        with common.working():  # pockets may take minutes too
             yield
 
 
 @click.command()
-@case_options
+@common.case_options
 def check(case: str, changes: tuple[str, ...]) -> None:
     """Check a case and show what follows from it, as a data sheet, without computing losses.
 
@@ -108,58 +91,58 @@ def check(case: str, changes: tuple[str, ...]) -> None:
     from epicyclic.show.result_tables import details
     from epicyclic.show.terminal import Sentence, as_on_page, spaced
 
-    loaded = load_with(case, changes)
+    loaded = common.load_with(case, changes)
     found = list(reservations(loaded))
     kind = loaded.kind.replace("_", " ")
     points = "1 point" if len(found) == 1 else f"{len(found)} points"
-    echo(f"{case}: a valid {kind} case{f'; {points} to check:' if found else '.'}")
-    print_tables(*map(Sentence, found), end="")
+    common.echo(f"{case}: a valid {kind} case{f'; {points} to check:' if found else '.'}")
+    common.print_tables(*map(Sentence, found), end="")
     if loaded.lubrication is not None:
         from epicyclic.build.models import set_cases
         from epicyclic.build.result import oil_supplies
 
         for name, supply in oil_supplies(set_cases(loaded)):
-            print_tables(f"Lubrication{f' of {name}' if name else ''}: {supply.text}.")
+            common.print_tables(f"Lubrication{f' of {name}' if name else ''}: {supply.text}.")
     states = [state_tables(loaded)] if loaded.kind == "train" else []
-    print_tables(spaced(data_sheet(loaded), *states, *map(as_on_page, details(loaded))))
+    common.print_tables(spaced(data_sheet(loaded), *states, *map(as_on_page, details(loaded))))
 
 
 @click.command()
-@case_options
-@plot_option("Draw the sliding loss with every model to FILE (.png, .svg, .pdf).")
+@common.case_options
+@common.plot_option("Draw the sliding loss with every model to FILE (.png, .svg, .pdf).")
 def friction(case: str, changes: tuple[str, ...], plot: Path | None) -> None:
     """Compare all friction models on a case, with their ranges and a recommendation."""
     from epicyclic.show.details import friction_table
     from epicyclic.study.friction import compare_friction
 
-    loaded = load_with(case, changes)
-    if tell_given(loaded, "compare") and plot is None:
+    loaded = common.load_with(case, changes)
+    if common.tell_given(loaded, "compare") and plot is None:
         return
     with telling_contacts(loaded):
         rows = compare_friction(loaded)
-    print_tables(friction_table(rows))
+    common.print_tables(friction_table(rows))
     if plot is not None:
         from epicyclic.show.plots.mesh import friction_figure
 
-        draw(friction_figure(rows, loaded.title), plot, point_of(loaded))
+        common.draw(friction_figure(rows, loaded.title), plot, common.point_of(loaded))
 
 
 @click.command()
-@case_options
-@plot_option("Draw each mesh to FILE-MESH.png, .svg or .pdf.")
+@common.case_options
+@common.plot_option("Draw each mesh to FILE-MESH.png, .svg or .pdf.")
 def mesh(case: str, changes: tuple[str, ...], plot: Path | None) -> None:
     """Show the tooth contact: load, transmission error, stiffness, pressure, friction power."""
     from epicyclic.show.studies import mesh_tables
     from epicyclic.study.meshes import mesh_details
 
-    loaded = load_with(case, changes)
+    loaded = common.load_with(case, changes)
     meshes = mesh_details(loaded)
-    print_tables(mesh_tables(meshes))
+    common.print_tables(mesh_tables(meshes))
     if plot is not None:
         from epicyclic.show.plots.mesh import mesh_figure
 
         for key, details in meshes.items():
-            draw(mesh_figure(details), beside(plot, key), point_of(loaded))
+            common.draw(mesh_figure(details), common.beside(plot, key), common.point_of(loaded))
 
 
 AS_GIVEN = "oil_temperature"
@@ -167,7 +150,7 @@ QUANTITIES = (AS_GIVEN, "cooler_power", "oil_flow", "input_power")
 
 
 @click.command()
-@case_options
+@common.case_options
 @click.option(
     "--solve",
     "quantity",
@@ -180,8 +163,8 @@ QUANTITIES = (AS_GIVEN, "cooler_power", "oil_flow", "input_power")
 @click.option(
     "--target", metavar="TEMPERATURE", help='Oil temperature in the gearbox, as in "90 degC".'
 )
-@json_option
-@plot_option("Draw parts, temperatures and heat flows (.png, .svg, .pdf).")
+@common.json_option
+@common.plot_option("Draw parts, temperatures and heat flows (.png, .svg, .pdf).")
 def heat(
     case: str,
     changes: tuple[str, ...],
@@ -209,15 +192,15 @@ def heat(
         given, remedy = f'"{target}"', f"Add --solve {either(QUANTITIES[1:])}."
         allowed = "needs a quantity to solve for."
         raise one_problem("--target", given, allowed, remedy, "the command")
-    stated = load_with(case, changes)
+    stated = common.load_with(case, changes)
     found = None
     if target is not None:
-        with progress_bar("settled states") as progress:
+        with common.progress_bar("settled states") as progress:
             found = solve_for(stated, quantity, target, progress=progress)
     solved = with_network(stated) if found is None else found.case
     result = solve(solved) if found is None else found.result
     if stated.models.temperatures != "network":
-        echo(
+        common.echo(
             f"Computed with models.temperatures = network instead of {stated.models.temperatures}.",
             err=True,
         )
@@ -226,12 +209,12 @@ def heat(
         contents = result.to_dict() | ({} if found is None else {"found": found.to_dict()})
         return json.dumps(contents, indent=2, allow_nan=False, ensure_ascii=False)
 
-    show(lambda: _tables(solved, result, found), as_json, json_file)
+    common.show(lambda: _tables(solved, result, found), as_json, json_file)
     if plot is not None:
         from epicyclic.show.plots.catalogue import figure_of
         from epicyclic.show.record import record
 
-        draw(figure_of(record(solved, result=result, groups=()), "heat-network"), plot)
+        common.draw(figure_of(record(solved, result=result, groups=()), "heat-network"), plot)
 
 
 def _tables(case: Case, result: Result, found: Found | None) -> RenderableType:
@@ -250,7 +233,7 @@ def _tables(case: Case, result: Result, found: Found | None) -> RenderableType:
 
 
 @click.command("warm-up")
-@case_options
+@common.case_options
 @click.option("--for", "duration", metavar="TIME", required=True, help='Duration, as in "2 h".')
 @click.option(
     "--from",
@@ -264,8 +247,8 @@ def _tables(case: Case, result: Result, found: Found | None) -> RenderableType:
     help="A .csv or .parquet file as for 'epicyclic duty', which is repeated; default: the "
     "operating point.",
 )
-@output_option("Write .nc, .csv or .parquet.", "FILE")
-@plot_option("Draw temperatures and loss over time to a .png, .svg or .pdf file.")
+@common.output_option("Write .nc, .csv or .parquet.", "FILE")
+@common.plot_option("Draw temperatures and loss over time to a .png, .svg or .pdf file.")
 def warm_up(
     case: str,
     changes: tuple[str, ...],
@@ -286,14 +269,14 @@ def warm_up(
     from epicyclic.study.sweeps.run import FORMATS, write_dataset
 
     if output is not None:
-        check_ending("-o", output, FORMATS)
+        common.check_ending("-o", output, FORMATS)
     check_place(output, plot)
-    loaded = load_with(case, changes)
-    with progress_bar("warming up") as progress:
+    loaded = common.load_with(case, changes)
+    with common.progress_bar("warming up") as progress:
         data = compute(loaded, duration, start, cycle=cycle, progress=progress)
     if output is not None:
         write_dataset(data, output, warm_up_rows)
-    print_tables(warm_up_tables(data))
+    common.print_tables(warm_up_tables(data))
     if cycle is None:
         begin = f"{float(data['temperature'].sel(node='oil')[0])!r} degC"
         cold = {"models.temperatures": "inlet", "operation.oil_inlet_temperature": begin}
@@ -303,4 +286,6 @@ def warm_up(
     if plot is not None:
         from epicyclic.show.plots.heat_network import warm_up_figure
 
-        draw(warm_up_figure(data), plot, f"cycle {cycle}" if cycle else point_of(loaded))
+        common.draw(
+            warm_up_figure(data), plot, f"cycle {cycle}" if cycle else common.point_of(loaded)
+        )

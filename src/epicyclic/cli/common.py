@@ -438,10 +438,7 @@ def parse_changes(options: Sequence[str]) -> dict[str, Any]:
             problems.append(Problem("--set", f'"{option}"', "must be KEY=VALUE.", remedy))
         else:
             value = parse_value(text.strip()) if text.strip() else None
-            keys = dict.fromkeys(_alternatives(key.strip()), value)
-            again = (f"changes {key} again." for key in keys if key in changes)
-            problems += [Problem("--set", f'"{option}"', told, "Give it once.") for told in again]
-            changes |= keys
+            changes |= dict.fromkeys(_alternatives(key.strip()), value)
     raise_any(problems, "the command")
     return changes
 

@@ -9,22 +9,7 @@ from typing import TYPE_CHECKING
 import click
 from pydantic_core import PydanticCustomError
 
-from epicyclic.cli.common import (
-    case_options,
-    draw,
-    journal_option,
-    json_option,
-    load_with,
-    output_option,
-    plot_option,
-    print_tables,
-    progress_bar,
-    runner_options,
-    shard_option,
-    show,
-    table_options,
-    tell,
-)
+from epicyclic.cli import common
 from epicyclic.cli.many import Write, compute
 from epicyclic.errors import InputError, Problem, one_problem, raise_any
 from epicyclic.files import check_place, write_file
@@ -40,7 +25,7 @@ if TYPE_CHECKING:
 
 
 @click.command()
-@case_options
+@common.case_options
 @click.argument("measured", metavar="MEASURED", type=click.Path(path_type=Path))
 @click.option(
     "--component",
@@ -99,13 +84,13 @@ if TYPE_CHECKING:
 @click.option(
     "--seed", type=click.IntRange(0), default=0, help="Seed of the random share; default: 0."
 )
-@table_options
-@output_option("Write the calibrated case (.toml).", "FILE", endings=(".toml",))
-@plot_option("Draw parity and residuals to .png, .svg or .pdf.")
-@json_option
-@journal_option
-@shard_option
-@runner_options
+@common.table_options
+@common.output_option("Write the calibrated case (.toml).", "FILE", endings=(".toml",))
+@common.plot_option("Draw parity and residuals to .png, .svg or .pdf.")
+@common.json_option
+@common.journal_option
+@common.shard_option
+@common.runner_options
 def compare(
     case: str,
     measured: Path,
@@ -151,7 +136,7 @@ def compare(
     if runner.shard is not None:
         others = {"--relative": relative, "--hold-out": hold_out, "--journal": journal}
         _check_shard(json_file, {"--fit": fit, **others})
-    loaded = load_with(case, changes)
+    loaded = common.load_with(case, changes)
     if runner.shard is not None:
         from epicyclic.study.measured.compare import ComparisonPlan, ask
         from epicyclic.study.table_file import read_grid
@@ -161,7 +146,7 @@ def compare(
         write = comparison_writer(plan, file)
         compute(plan, file, runner, write, plot=None if plot is None else str(plot))
         return
-    with progress_bar("points") as progress:
+    with common.progress_bar("points") as progress:
         comparison = compare_measured(
             loaded,
             measured,
@@ -178,9 +163,9 @@ def compare(
             dask=runner.dask,
             journal=journal,
             progress=progress,
-            tell=tell,
+            tell=common.tell,
         )
-    show(lambda: measured_tables(comparison), comparison.to_json, json_file)
+    common.show(lambda: measured_tables(comparison), comparison.to_json, json_file)
     if output is not None:
         write_file(output, _calibrated_text(comparison))
     if plot is not None:
@@ -199,7 +184,7 @@ def comparison_writer(plan: ComparisonPlan, output: Path, plot: str | None = Non
 
         comparison = plan.comparison(rows)
         write_file(output, comparison.to_json() + "\n")
-        print_tables(measured_tables(comparison))
+        common.print_tables(measured_tables(comparison))
         if plot is not None:
             _draw(comparison, Path(plot))
         return f"Wrote {output}."
@@ -210,7 +195,7 @@ def comparison_writer(plan: ComparisonPlan, output: Path, plot: str | None = Non
 def _draw(comparison: MeasuredComparison, plot: Path) -> None:
     from epicyclic.show.plots.measured import measured_figure
 
-    draw(measured_figure(comparison), plot)
+    common.draw(measured_figure(comparison), plot)
 
 
 def _check_shard(json_file: str | None, others: Mapping[str, object]) -> None:

@@ -10,22 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from epicyclic.cli.common import (
-    check_ending,
-    echo,
-    file_option,
-    journal_option,
-    json_option,
-    load_with,
-    output_option,
-    progress_bar,
-    runner_options,
-    set_option,
-    shard_option,
-    show,
-    table_options,
-    wrong_ending,
-)
+from epicyclic.cli import common
 from epicyclic.cli.many import Write, compute, warn_at
 from epicyclic.errors import ConvergenceError, Problem, raise_any
 from epicyclic.files import check_place, write_file
@@ -46,7 +31,7 @@ _JSON = ".json"
 @click.command()
 @click.argument("map_or_case", metavar="MAP|CASE")
 @click.argument("cycle", metavar="CYCLE")
-@set_option
+@common.set_option
 @click.option(
     "--temperature",
     "temperatures",
@@ -55,14 +40,14 @@ _JSON = ".json"
     help='Oil inlet temperature, as in "20 degC", if it is not a column of the cycle; repeatable.',
 )
 @click.option("--clamp", is_flag=True, help="Evaluate points outside the map at its boundary.")
-@file_option("--map", "map_file", help="Keep the map computed for a CASE in a .nc file.")
+@common.file_option("--map", "map_file", help="Keep the map computed for a CASE in a .nc file.")
 @click.option("--distance", metavar="VALUE", help='Distance driven, as in "23.27 km"; adds Wh/km.')
-@table_options
-@output_option("Write .nc or .csv.", "FILE")
-@json_option
-@journal_option
-@shard_option
-@runner_options
+@common.table_options
+@common.output_option("Write .nc or .csv.", "FILE")
+@common.json_option
+@common.journal_option
+@common.shard_option
+@common.runner_options
 def duty(
     map_or_case: str,
     cycle: str,
@@ -94,13 +79,13 @@ def duty(
     if runner.shard is not None:
         _check_shard(output, json_file, journal)
     runner = replace(runner, journal=journal)
-    with progress_bar("rows read") as progress:
+    with common.progress_bar("rows read") as progress:
         checked = open_cycle(cycle, progress, form)
     celsius = parse_temperatures(checked, temperatures or None)
     if runner.shard is not None:
         from epicyclic.study.maps.duty import DutyPlan, cycle_plan, digest_of
 
-        case = load_with(map_or_case, changes)
+        case = common.load_with(map_or_case, changes)
         digest = digest_of(Path(cycle))
         points = cycle_plan(case, checked, celsius)
         plan = DutyPlan(points.case, points.axes, digest=digest, celsius=celsius, clamp=clamp)
@@ -131,7 +116,7 @@ def duty_writer(
     """
     from epicyclic.study.maps.duty import check_same
 
-    check_ending("-o", output, (*_OUTPUTS, _JSON))
+    common.check_ending("-o", output, (*_OUTPUTS, _JSON))
     check_place(output)
     path = Path(cycle) if Path(cycle).is_file() else Path(folder, cycle)
     check_same(plan, path)
@@ -165,12 +150,12 @@ def _result(
 ) -> xr.Dataset:
     from epicyclic.study.maps.duty import add_up, costliest, make_duty
 
-    with progress_bar("rows") as progress:
+    with common.progress_bar("rows") as progress:
         sums = add_up(data, cycle, celsius, clamp=clamp, progress=progress)
     with suppress(ConvergenceError):  # the map was interpolated there
         if (case := costliest(data, sums)) is not None:
             warn_at(case)
-    with progress_bar("checked points") as progress:
+    with common.progress_bar("checked points") as progress:
         return make_duty(data, cycle, sums, replace(runner, progress=progress))
 
 
@@ -190,7 +175,7 @@ def _check_options(
         ]
     for name, path, suffixes in (("--map", map_file, (_MAP_SUFFIX,)), ("-o", output, _OUTPUTS)):
         if path is not None:
-            problems += wrong_ending(name, path, suffixes)
+            problems += common.wrong_ending(name, path, suffixes)
     raise_any(problems, "the command")
     check_place(map_file, output)
 
@@ -227,8 +212,8 @@ def _map(
 
     if Path(map_or_case).suffix == _MAP_SUFFIX:
         return open_map(map_or_case)
-    case = load_with(map_or_case, changes)
-    with progress_bar("points of the map") as progress:
+    case = common.load_with(map_or_case, changes)
+    with common.progress_bar("points of the map") as progress:
         data = cycle_map(case, cycle, celsius, replace(runner, progress=progress))
     if map_file is not None:
         _write_map(data, map_file)
@@ -239,7 +224,7 @@ def _write_map(data: xr.Dataset, map_file: Path) -> None:
     from epicyclic.study.maps.formats import write_map
 
     write_map(data, map_file)
-    echo(f"Wrote the map to {map_file}.", err=True)
+    common.echo(f"Wrote the map to {map_file}.", err=True)
 
 
 def _write_table(result: xr.Dataset, output: Path) -> None:
@@ -252,4 +237,4 @@ def _write_table(result: xr.Dataset, output: Path) -> None:
 def _show(result: xr.Dataset, json_file: str | None) -> None:
     from epicyclic.show.studies import duty_json, duty_tables
 
-    show(lambda: duty_tables(result), lambda: duty_json(result), json_file)
+    common.show(lambda: duty_tables(result), lambda: duty_json(result), json_file)

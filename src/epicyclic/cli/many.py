@@ -12,19 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from epicyclic.cli.common import (
-    case_options,
-    echo,
-    file_option,
-    load_with,
-    output_option,
-    point_of,
-    progress_bar,
-    runner_options,
-    set_option,
-    shard_option,
-    temperature_option,
-)
+from epicyclic.cli import common
 from epicyclic.errors import EXIT_FAILED_POINTS, Problem, one_problem, raise_any
 
 if TYPE_CHECKING:
@@ -58,7 +46,7 @@ def convert(file: Path, output: Path, name: str | None, *, heated: bool) -> None
             raise one_problem("--temperature-state", "", allowed, remedy, str(file))
         data = with_temperature_state(data, case)
     write_map(data, output, name)
-    echo(f"Wrote the map of {file} to {output}.")
+    common.echo(f"Wrote the map of {file} to {output}.")
 
 
 Write = Callable[["Rows"], str]  # Writes the rows of a plan, and tells what it wrote.
@@ -66,7 +54,7 @@ SHOWN_FAILURES = 10
 
 
 @click.command()
-@case_options
+@common.case_options
 @click.option(
     "--vary",
     metavar="KEY=VALUES",
@@ -80,7 +68,7 @@ SHOWN_FAILURES = 10
     multiple=True,
     help='Keys that vary together, as in "sun.teeth=30,33; ring.teeth=84,90".',
 )
-@file_option(
+@common.file_option(
     "--points",
     metavar="FILE.csv",
     help='Table with one point per row and one key per column: "gears.normal_module [mm]".',
@@ -92,9 +80,9 @@ SHOWN_FAILURES = 10
     multiple=True,
     help='A key computed from others, as in "ring.teeth = sun.teeth + 2 * planet.teeth".',
 )
-@output_option(".nc, .csv or .parquet", required=True)
-@shard_option
-@runner_options
+@common.output_option(".nc, .csv or .parquet", required=True)
+@common.shard_option
+@common.runner_options
 def sweep(
     case: str,
     changes: tuple[str, ...],
@@ -122,7 +110,7 @@ def sweep(
         parse_vary,
     )
 
-    loaded = load_with(case, changes)
+    loaded = common.load_with(case, changes)
     check_output(output)
     plan = make_plan(
         loaded,
@@ -142,7 +130,7 @@ def sweep_writer(plan: SweepPlan, output: Path) -> Write:
 
     def write(rows: Rows) -> str:
         for key in dataset.idle_keys(plan, rows):
-            echo(f"Note: no loss changes with {key}.", err=True)
+            common.echo(f"Note: no loss changes with {key}.", err=True)
         tell_ranges(plan, rows)
         dataset.write_dataset(dataset.to_dataset(plan, rows), output)
         return points_written(rows, output)
@@ -152,14 +140,14 @@ def sweep_writer(plan: SweepPlan, output: Path) -> Write:
 
 @click.command("map")
 @click.argument("case", metavar="CASE|FILE.nc")
-@set_option
+@common.set_option
 @click.option("--speed", metavar="VALUES", help='Speed of the input member, as in "0:4000:41 rpm".')
 @click.option(
     "--torque",
     metavar="VALUES",
     help='Torque on the input member, as in "-1000:1000:41 N*m"; against the speed means coasting.',
 )
-@temperature_option
+@common.temperature_option
 @click.option(
     "--states",
     metavar="NAMES",
@@ -171,7 +159,7 @@ def sweep_writer(plan: SweepPlan, output: Path) -> Write:
     multiple=True,
     help='Further keys to vary, as in "planet.count=3,4".',
 )
-@output_option("File of the map.", required=True)
+@common.output_option("File of the map.", required=True)
 @click.option(
     "--format", "name", metavar="NAME", help="File format; default: by the ending of the file."
 )
@@ -184,8 +172,8 @@ def sweep_writer(plan: SweepPlan, output: Path) -> Write:
     is_flag=True,
     help="For an FMU: its temperature follows from its losses.",
 )
-@shard_option
-@runner_options
+@common.shard_option
+@common.runner_options
 def loss_map(
     case: str,
     changes: tuple[str, ...],
@@ -227,7 +215,7 @@ def loss_map(
     )
     from epicyclic.study.sweeps.run import parse_vary
 
-    loaded = load_with(case, changes)
+    loaded = common.load_with(case, changes)
     _check_given(values)
     check_values(values)
     chosen = None if states is None else [name.strip() for name in states.split(",")]
@@ -240,7 +228,7 @@ def loss_map(
         torque = resolving_texts(torque)
     plan = map_plan(loaded, speed, torque, given.get("temperature"), further, chosen)
     for state, reason in ({} if chosen else states_left_out(loaded)).items():
-        echo(f"State {state} is left out: it {reason}", err=True)
+        common.echo(f"State {state} is left out: it {reason}", err=True)
     if heated:
         check_axis(len(coordinates(plan).get("temperature", ())))
     compute(plan, output, runner, map_writer(plan, output, name, own), format=name, lumped=own)
@@ -264,7 +252,7 @@ def map_writer(
         data = checked_map(plan, rows)
         write_map(data.assign_attrs(lumped or {}), output, format)
         if "torque_interpolation" in data.attrs:
-            echo(f"Interpolated {data.attrs['torque_interpolation']}.", err=True)
+            common.echo(f"Interpolated {data.attrs['torque_interpolation']}.", err=True)
         tell_warnings(plan, rows)
         return points_written(rows, files)
 
@@ -318,18 +306,18 @@ def compute(
     _tell_others(output, journal.path)
     size, kept = len(share_of(plan, runner.shard)), len(journal.read())
     if kept:
-        echo(f"Continuing from {kept} of {size} points in {journal.path}.", err=True)
+        common.echo(f"Continuing from {kept} of {size} points in {journal.path}.", err=True)
     try:
-        with progress_bar(noun) as progress:
+        with common.progress_bar(noun) as progress:
             rows = replace(runner, journal=journal.path, progress=progress, output=how).run(plan)
         if runner.shard is None:
             finish(plan, rows, write, journal)
         else:
-            echo(f"{size} of {plan.size} points are in {journal.path}.")
+            common.echo(f"{size} of {plan.size} points are in {journal.path}.")
     except (KeyboardInterrupt, Exception):
         kept = len(journal.read())
         if kept:
-            echo(
+            common.echo(
                 f"{kept} of {size} points kept in {journal.path}; give the same command again to "
                 "continue.",
                 err=True,
@@ -345,7 +333,7 @@ def finish(plan: Plan, rows: Rows, write: Write, journal: Journal | None = None)
     written = write(rows)
     if journal is not None:
         journal.remove()
-    echo(written)
+    common.echo(written)
     if failures:
         sys.exit(EXIT_FAILED_POINTS)
 
@@ -356,7 +344,7 @@ def _print_thin_teeth(rows: Rows) -> None:
 
     thin = sum(TOO_THIN in text for text in rows.warnings)
     if thin:
-        echo(
+        common.echo(
             f"{thin} of {len(rows)} points: the teeth are far too thin for their centre distance. "
             "If profile shifts are left out, they are computed for each point.",
             err=True,
@@ -372,7 +360,7 @@ def tell_ranges(plan: SweepPlan, rows: Rows) -> None:
         worst = plan.changes(outside.index(max(outside))).items()
         told = f"{count} of {len(rows)} points use a model outside its range, most at"
         place = ", ".join(f"{key} = {value}" for key, value in worst)
-        echo(f"{told} {place}; 'epicyclic run' there names them.", err=True)
+        common.echo(f"{told} {place}; 'epicyclic run' there names them.", err=True)
 
 
 def tell_warnings(plan: MapPlan, rows: Rows) -> None:
@@ -392,8 +380,8 @@ def warn_at(case: Case, where: str = "at the greatest loss") -> None:
 
     found = first_warnings(solve(case))
     if found.items:
-        head = f"{found.title} {where}: {point_of(case)}"
-        echo("\n• ".join((head, *found.items)), err=True)
+        head = f"{found.title} {where}: {common.point_of(case)}"
+        common.echo("\n• ".join((head, *found.items)), err=True)
 
 
 def points_written(rows: Rows, output: Path | str) -> str:
@@ -407,7 +395,7 @@ def _tell_others(output: Path, own: Path) -> None:
     """Say what is there beside `output` from other sweeps that were interrupted."""
     for path in sorted(output.parent.glob(f"{glob.escape(output.name)}.*.partial")):
         if path.name != own.name:
-            echo(
+            common.echo(
                 f"{path} holds points of an interrupted sweep of another case or with other "
                 "values, and is kept. Delete it if you do not need it.",
                 err=True,
@@ -418,6 +406,6 @@ def _print_failures(reasons: Sequence[str]) -> None:
     """Each reason once, with the number of points that failed for it."""
     counts = Counter(reasons)
     for reason, count in list(counts.items())[:SHOWN_FAILURES]:
-        echo(f"{count} failed: {reason}", err=True)
+        common.echo(f"{count} failed: {reason}", err=True)
     if len(counts) > SHOWN_FAILURES:
-        echo(f"... and {len(counts) - SHOWN_FAILURES} other reasons.", err=True)
+        common.echo(f"... and {len(counts) - SHOWN_FAILURES} other reasons.", err=True)

@@ -7,24 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from epicyclic.cli.common import (
-    beside,
-    case_options,
-    check_ending,
-    draw,
-    echo,
-    file_option,
-    load_with,
-    output_option,
-    plot_option,
-    point_of,
-    print_tables,
-    progress_bar,
-    runner_options,
-    shard_option,
-    temperature_option,
-    working,
-)
+from epicyclic.cli import common
 from epicyclic.cli.many import Write, check_values, compute, parse_axes
 from epicyclic.files import check_place, write_file
 from epicyclic.units import percent
@@ -35,9 +18,11 @@ if TYPE_CHECKING:
 
 
 @click.command()
-@case_options
-@plot_option("Draw each mesh to FILE-MESH.png, .svg or .pdf, and its section to FILE-MESH-section.")
-@file_option(
+@common.case_options
+@common.plot_option(
+    "Draw each mesh to FILE-MESH.png, .svg or .pdf, and its section to FILE-MESH-section."
+)
+@common.file_option(
     "--animate",
     endings=(".gif",),
     help="Animate each mesh in FILE-MESH.gif, with the pressure as colour.",
@@ -53,41 +38,43 @@ def pockets(case: str, changes: tuple[str, ...], plot: Path | None, animate: Pat
     from epicyclic.show.studies import pocket_tables
     from epicyclic.study.pockets import pocket_details
 
-    loaded = load_with(case, changes)
-    with working():
+    loaded = common.load_with(case, changes)
+    with common.working():
         meshes = pocket_details(loaded)
-    print_tables(pocket_tables(meshes))
+    common.print_tables(pocket_tables(meshes))
     for key, mesh in meshes.items():
         if plot is not None:
             from epicyclic.show.plots.pockets import pocket_figure, section_figure
 
-            draw(pocket_figure(mesh), beside(plot, key), point_of(loaded))
-            draw(section_figure(mesh), beside(plot, f"{key}-section"), point_of(loaded))
+            common.draw(pocket_figure(mesh), common.beside(plot, key), common.point_of(loaded))
+            common.draw(
+                section_figure(mesh), common.beside(plot, f"{key}-section"), common.point_of(loaded)
+            )
         if animate is not None:
             from epicyclic.show.plots.pockets import pocket_animation
 
-            with progress_bar("frames") as progress:
+            with common.progress_bar("frames") as progress:
                 moving = pocket_animation(mesh, progress)
-            path = beside(animate, key)
+            path = common.beside(animate, key)
             write_file(path, moving)
-            echo(f"Wrote {path}.")
+            common.echo(f"Wrote {path}.")
 
 
 FORMATS = (".nc", ".csv")
 
 
 @click.command("pockets-table")
-@case_options
+@common.case_options
 @click.option(
     "--speed",
     metavar="VALUES",
     required=True,
     help='Speed of the input member, as in "500:5000:10 rpm".',
 )
-@temperature_option
-@output_option(".nc for use in a case, or .csv", required=True, endings=FORMATS)
-@shard_option
-@runner_options
+@common.temperature_option
+@common.output_option(".nc for use in a case, or .csv", required=True, endings=FORMATS)
+@common.shard_option
+@common.runner_options
 def pockets_table(
     case: str, changes: tuple[str, ...], output: Path, runner: Runner, **values: str | None
 ) -> None:
@@ -98,7 +85,7 @@ def pockets_table(
     """
     from epicyclic.study.pocketing_table import make_table_plan
 
-    loaded = load_with(case, changes)
+    loaded = common.load_with(case, changes)
     check_values(values)
     given = parse_axes(loaded, values)
     plan = make_table_plan(loaded, given["speed"], given.get("temperature"))
@@ -110,7 +97,7 @@ def table_writer(plan: TablePlan, output: Path) -> Write:
     from epicyclic.study.pocketing_table import table_dataset
     from epicyclic.study.sweeps.run import write_dataset
 
-    check_ending("-o", output, FORMATS)
+    common.check_ending("-o", output, FORMATS)
     check_place(output)
 
     def write(rows: Rows) -> str:
