@@ -422,3 +422,9 @@ def test_no_file_is_written_over_one_that_is_read(tmp_path, arguments, told):
     assert told in done.errors
     assert {(tmp_path / it).read_text(encoding="utf-8") for it in ("c.toml", "t.csv")} == {text}
     assert not (tmp_path / "r.nc").exists()
+
+
+def test_options_of_a_picture_need_its_name(epicyclic):
+    done = epicyclic("plot", "talbot-2012-pair", "-o", "x.png")
+    assert done.returncode == 2
+    assert "WHAT: is missing." in done.stderr

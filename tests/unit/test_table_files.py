@@ -270,6 +270,26 @@ def test_a_loss_follows_from_two_torques(talbot):
     np.testing.assert_allclose(table.loss[0], (1000 * 50 - 900 * 49) * np.pi / 30)
 
 
+@pytest.mark.parametrize("sign", [1, -1])
+def test_signs_of_an_output_torque_tell_where_both_shafts_drive(sign):
+    pair = ep.load_case("talbot-2012-pair")
+    ratio = pair.gear.teeth / pair.pinion.teeth
+    driving, idle, coasting = -49.0 * ratio, 0.3 * ratio, 21.0 * ratio  # as a rig or a motor has it
+    frame = pd.DataFrame(
+        {"speed [rpm]": [1000, 1000, 1000], "torque [N*m]": [50.0, 0.2, -20.0],
+         "temperature [degC]": [60, 60, 60], "torque_uncertainty [%]": [0.1, 0.2, 0.3],
+         "output torque [Nm]": np.array([driving, idle, coasting]) * sign}
+    )  # fmt: skip
+    table = parse_measurements(read_grid(frame), pair)
+    shaft = 1000 * np.pi / 30
+    np.testing.assert_allclose(table.loss, np.array([1.0, 0.5, 1.0]) * shaft)
+    of_both = [np.hypot(50, 49), np.hypot(0.2, 0.3), np.hypot(20, 21)]
+    np.testing.assert_allclose(table.uncertainty, np.array([1e-3, 2e-3, 3e-3]) * of_both * shaft)
+    frame["output torque [Nm]"] = np.abs(frame["output torque [Nm]"])  # magnitudes tell nothing
+    table = parse_measurements(read_grid(frame), pair)
+    np.testing.assert_allclose(table.loss, np.array([1.0, -0.1, 1.0]) * shaft)
+
+
 def test_a_table_may_be_long(tmp_path):
     rows = 70_000
     buffer = io.StringIO()

@@ -257,3 +257,16 @@ def test_light_load_of_a_cycle_is_resolved():
         "operation.oil_inlet_temperature": "20 degC",
     })  # fmt: skip
     assert float(course["total_loss"][0]) == pytest.approx(ep.solve(cold).total, rel=5e-3)
+
+
+@pytest.mark.slow
+def test_a_cycle_of_a_train_of_given_losses_needs_no_temperature():
+    cycle = {"time [s]": [0, 3, 7, 9], "speed [rpm]": [900, 900, 900, 900],
+             "torque [N*m]": [130, 130, 130, 130], "state": ["1", "1", "R", "R"]}  # fmt: skip
+    data = ep.warm_up("train-8hp70", "9 s", "20 degC", cycle=pd.DataFrame(cycle))
+    case = ep.load_case("train-8hp70").updated(
+        {"operation.speed": "900 rpm", "operation.torque": "130 N*m"}
+    )
+    first, back = (ep.solve(case.updated({"operation.state": it})).total for it in ("1", "R"))
+    lost = float(data["energy_lost"][-1])
+    assert min(first, back) * 9e-3 < lost < max(first, back) * 9e-3

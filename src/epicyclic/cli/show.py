@@ -144,6 +144,9 @@ def plot(
 
     FILE.nc is what run --save, map, sweep or uncertainty wrote; a CASE is solved first.
     """
+    if what is None and (output or size or dpi or ending):
+        remedy = "Give it, or leave out what belongs to a picture to see the list."
+        raise one_problem("WHAT", "", "is missing.", remedy, "the command")
     if output is None:
         output = Path(f"{what}.{ending or 'png'}")
     check_ending("-o", output, PICTURES if ending is None else (f".{ending}",))

@@ -387,9 +387,9 @@ def _driven(case: Case, seconds: float, cycle: Cycle) -> _Drive:
     plan = grid_plan(even, cycle, (SPEEDS, TORQUES, CROWD))
     points = [plan.changes(index) for index in range(plan.size)]
     for changes in points:
-        del changes[AXES["temperature"]]
+        changes.pop(AXES["temperature"], None)  # a train of given losses has none
     sizes = {axis_name(axis.key): np.array(axis.coordinate) for axis in plan.axes}
-    del sizes["temperature"]
+    sizes.pop("temperature", None)
     states = tuple(map(str, sizes.get(STATE, ())))
     if states:
         sizes[STATE] = np.arange(1.0, len(states) + 1)

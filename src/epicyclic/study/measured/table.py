@@ -295,8 +295,13 @@ class _Stated:
             with np.errstate(divide="ignore", invalid="ignore"):
                 return np.where(power > 0, power * (1 - share), -power * (1 / share - 1))
         torque = _numbers(self.columns[_TORQUE_OUT], NEWTON_METRE, self.problems)
-        leaving = np.abs(shaft_power(torque, self._speed_out()))
-        return np.where(power > 0, power - leaving, leaving + power)
+        leaving = shaft_power(torque, self._speed_out())
+        well = np.abs(power) > np.abs(power).max(initial=0.0) / 10  # rows under load
+        senses = np.sign(leaving * power)[well & (np.abs(leaving) > np.abs(power) / 2)]
+        # Signs that agree tell which way the power flows, also where both shafts drive.
+        told = senses.size and np.all(senses == senses[0])
+        leaving *= senses[0] if told else np.sign(leaving) * np.where(power > 0, 1, -1)
+        return power - leaving
 
     def uncertainty(self, loss: FloatArray) -> FloatArray | None:
         """Standard uncertainties in W, from W or from per cent of the loss."""
@@ -318,8 +323,8 @@ class _Stated:
     def _of_torques(self, loss: FloatArray) -> FloatArray:
         """The same from the uncertainty of one torque, or of two independent ones. [W]"""
         column, two = self.columns[SENSOR], self.by_two_torques
-        entering = np.abs(shaft_power(self.conditions["torque"], self.conditions["speed"]))
-        powers = [entering, np.abs(entering - loss)] if two else [np.abs(loss)]
+        power = shaft_power(self.conditions["torque"], self.conditions["speed"])
+        powers = [np.abs(power), np.abs(power - loss)] if two else [np.abs(loss)]
         if column.unit == _PERCENT:
             share = _read(column, self.problems, _finite) / 100
             parts = [share * power for power in powers]
