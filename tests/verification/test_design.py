@@ -118,6 +118,20 @@ def test_screened_sizes_are_those_of_the_case(name):
     assert checked >= 1
 
 
+def test_planets_that_touch_each_other_are_screened_out():
+    """Of stepped planets both gears count: the narrow one may be the larger one."""
+    raw = task_of("wolfrom", ratio=40.0, planets=[4, 5], pinion_teeth=[13, 20], step=6)
+    raw["limits"] = {"ratio_error": 0.3, "pitting": 0.01, "bending": 0.01, "contact_ratio": 1.0}
+    found = screen(read_task(raw))
+    passing = found.table[found.table.fate == ""]
+    assert (found.table.fate == "planets touch each other").any()
+    for number in passing.index[:: max(1, len(passing) // 40)]:
+        try:
+            read_case(case_tables(found.task, passing.loc[number].dropna().to_dict()))
+        except InputError as error:
+            assert "neighbour" not in str(error)
+
+
 def test_every_candidate_has_one_fate_and_they_sum_up():
     raw = task_of("planetary", "pair", planets=[3, 4, 7])
     raw["limits"] |= {"diameter": "150 mm", "width": "60 mm", "mass": "3 kg"}

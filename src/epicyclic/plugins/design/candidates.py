@@ -394,14 +394,16 @@ def sizes(task: Task, table: pd.DataFrame) -> Sizes:
                 lives = [iso.life_factor(cycles, iso.BENDING_LIFE[it.treatment]) for it in bears]
                 best = 2 * 1.1 * max(it.bending for it in bears) * np.maximum(*lives)
                 least("bending", best / bent / task.limits.bending)
+            planet_tip = tip1 if mesh.internal else tip2  # of the planet, if there is one
             if mesh.internal:
                 outside = 2 * (r2 + module * (1.25 - x2 + 3))
             elif name == "pair":
                 outside = tip1 + tip2 + distance
             else:
                 outside = 2 * (distance + tip2)
+            if name != "pair":
                 side = 2 * distance * np.sin(math.pi / planets)
-                room = np.where(planets > 1, (side - 0.2 * module) / (2 * tip2), np.inf)
+                room = np.where(planets > 1, (side - 0.2 * module) / (2 * planet_tip), np.inf)
                 least("planets_touch", room)
             diameter = np.maximum(diameter, outside)
         for gear in layout.gears:
