@@ -428,3 +428,12 @@ def test_options_of_a_picture_need_its_name(epicyclic):
     done = epicyclic("plot", "talbot-2012-pair", "-o", "x.png")
     assert done.returncode == 2
     assert "WHAT: is missing." in done.stderr
+
+
+def test_a_wrong_distance_ends_a_duty_before_its_map(tmp_path):
+    (tmp_path / "c.csv").write_text("time [s],speed [rpm],torque [N*m]\n0,1700,31\n9,1900,37\n")
+    arguments = ["duty", "talbot-2012-pair", "c.csv", "--map", "m.nc", "--distance", "0 km"]
+    done = run_command(arguments, tmp_path)
+    assert done.code == 2
+    assert "distance = " in done.errors
+    assert not (tmp_path / "m.nc").exists()

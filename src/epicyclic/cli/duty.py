@@ -73,12 +73,12 @@ def duty(
     --json, which 'epicyclic merge' writes.
     """
     from epicyclic.study.maps.cycle import open_cycle
-    from epicyclic.study.maps.duty import parse_temperatures, with_distance
+    from epicyclic.study.maps.duty import distance_of, parse_temperatures, with_distance
 
     _check_options(map_or_case, changes, map_file, output, runner)
     if runner.shard is not None:
         _check_shard(output, json_file, journal)
-    runner = replace(runner, journal=journal)
+    runner, covered = replace(runner, journal=journal), distance_of(distance)
     with common.progress_bar("rows read") as progress:
         checked = open_cycle(cycle, progress, form)
     celsius = parse_temperatures(checked, temperatures or None)
@@ -95,7 +95,7 @@ def duty(
         compute(plan, file, runner, duty_writer(plan, file, **how), **how)
         return
     data = _map(map_or_case, changes, checked, celsius, map_file, runner)
-    result = with_distance(_result(data, checked, celsius, clamp, runner), distance)
+    result = with_distance(_result(data, checked, celsius, clamp, runner), covered)
     if output is not None:
         _write_table(result, output)
     _show(result, json_file)
@@ -114,12 +114,13 @@ def duty_writer(
 
     The cycle is that of this name here, else that in `folder`.
     """
-    from epicyclic.study.maps.duty import check_same
+    from epicyclic.study.maps.duty import check_same, distance_of
 
     common.check_ending("-o", output, (*_OUTPUTS, _JSON))
     check_place(output)
     path = Path(cycle) if Path(cycle).is_file() else Path(folder, cycle)
     check_same(plan, path)
+    covered = distance_of(distance)
 
     def write(rows: Rows) -> str:
         from epicyclic.show.studies import duty_json
@@ -132,7 +133,7 @@ def duty_writer(
         read = open_cycle(path, form=TableForm(**(form or {})))
         named = replace(read, source=replace(read.source, name=cycle))
         data = to_map(plan, rows)
-        result = with_distance(_result(data, named, plan.celsius, plan.clamp, HERE), distance)
+        result = with_distance(_result(data, named, plan.celsius, plan.clamp, HERE), covered)
         if map_file is not None:
             _write_map(data, Path(map_file))
         if output.suffix == _JSON:

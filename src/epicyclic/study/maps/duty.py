@@ -130,24 +130,28 @@ def duty_cycle(
     """
     import xarray as xr
 
-    runner = Runner(jobs, dask, journal=journal)
+    runner, covered = Runner(jobs, dask, journal=journal), distance_of(distance)
     checked = open_cycle(cycle, form=form)
     celsius = parse_temperatures(checked, temperature)
     data = map_or_case
     if not isinstance(data, xr.Dataset):
         data = cycle_map(as_case(data), checked, celsius, replace(runner, progress=progress))
     sums = add_up(data, checked, celsius, clamp=clamp, samples=samples)
-    return with_distance(make_duty(data, checked, sums, runner), distance)
+    return with_distance(make_duty(data, checked, sums, runner), covered)
 
 
-def with_distance(result: xr.Dataset, distance: Any) -> xr.Dataset:
-    """With the energy lost for each distance, if one is given; raises `InputError` for another."""
-    if distance is None:
-        return result
+def distance_of(text: Any) -> float | None:
+    """The distance that was stated; None if none was. [km]"""
     try:
-        covered = _DISTANCE.to_display(_DISTANCE.parse(distance))
+        return None if text is None else _DISTANCE.to_display(_DISTANCE.parse(text))
     except PydanticCustomError as error:
-        raise InputError([refused(error, "distance", written(distance))], "the command") from None
+        raise InputError([refused(error, "distance", written(text))], "the command") from None
+
+
+def with_distance(result: xr.Dataset, covered: float | None) -> xr.Dataset:
+    """With the energy lost for each distance, if one was covered. [km]"""
+    if covered is None:
+        return result
     lost = result["energy_lost"].sum(("mode", "component")) / _KJ_PER_WH / covered
     return result.assign(
         distance=((), covered, {"long_name": "distance", "units": "km"}),
