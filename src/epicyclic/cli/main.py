@@ -11,7 +11,6 @@ import threading
 import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
-from functools import wraps
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -50,42 +49,38 @@ _WRITTEN = {"output", "plot", "json_file", "save", "map_file", "rotor", "animate
 """Arguments of commands that name files to write."""
 
 
-def _with_files_apart(call: Callable[..., Any]) -> Callable[..., Any]:
-    """A command that refuses to write over a file that it reads, or twice to one place."""
+def _check_files(context: click.Context) -> None:
+    """Refuse to write over a file that the command reads, or twice to one place."""
+    names = {
+        it.name: it.human_readable_name if it.param_type_name == "argument" else it.opts[0]
+        for it in context.command.params
+    }
+    places: dict[str, str] = {}
+    wrong = []
+    for name in sorted(context.params, key=_WRITTEN.__contains__):  # first what is read
+        value = context.params[name]
+        for one in value if isinstance(value, tuple) else (value,):
+            if not isinstance(one, str | Path) or str(one) == "-":
+                continue
+            if name not in _WRITTEN and not os.path.isfile(one):  # noqa: PTH113 - any text
+                continue
+            other = places.setdefault(os.path.realpath(one), name)
+            if other != name:
+                allowed = f"is also the file of {names[other]}."
+                wrong.append(Problem(names[name], str(one), allowed, "Name another one."))
+    raise_any(wrong, "the command")
 
-    @wraps(call)
-    def checked(**values: Any) -> Any:
-        options = click.get_current_context().command.params
-        names = {
-            it.name: it.human_readable_name if it.param_type_name == "argument" else it.opts[0]
-            for it in options
-        }
-        places: dict[str, str] = {}
-        wrong = []
-        for name in sorted(values, key=_WRITTEN.__contains__):  # first what is read
-            value = values[name]
-            for one in value if isinstance(value, tuple) else (value,):
-                if not isinstance(one, str | Path) or str(one) == "-":
-                    continue
-                if name not in _WRITTEN and not os.path.isfile(one):  # noqa: PTH113 - any text
-                    continue
-                other = places.setdefault(os.path.realpath(one), name)
-                if other != name:
-                    allowed = f"is also the file of {names[other]}."
-                    wrong.append(Problem(names[name], str(one), allowed, "Name another one."))
-        raise_any(wrong, "the command")
-        return call(**values)
 
-    return checked
+class _Context(click.Context):
+    """That of a command, which checks its files before it begins."""
+
+    def invoke(self, *given: Any, **options: Any) -> Any:
+        _check_files(self)
+        return super().invoke(*given, **options)
 
 
 class _Commands(click.Group):
     """The commands of this package, and those of plug-ins, which are imported when called."""
-
-    def add_command(self, cmd: click.Command, name: str | None = None) -> None:
-        if cmd.callback is not None:
-            cmd.callback = _with_files_apart(cmd.callback)
-        super().add_command(cmd, name)
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         return sorted({*self.commands, *offered("commands")} - {*UNDER.values()})
@@ -98,10 +93,12 @@ class _Commands(click.Group):
         return super().resolve_command(ctx, args)
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        if cmd_name in self.commands or cmd_name not in offered("commands"):
-            return super().get_command(ctx, cmd_name)
-        self.add_command(load("commands", cmd_name), cmd_name)
-        return self.commands[cmd_name]
+        command = super().get_command(ctx, cmd_name)
+        if command is None and cmd_name in offered("commands"):
+            command = load("commands", cmd_name)
+        if command is not None:
+            command.context_class = _Context
+        return command
 
     def invoke(self, ctx: click.Context) -> Any:
         try:
