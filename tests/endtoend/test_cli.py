@@ -10,10 +10,11 @@ import sys
 import tomllib
 from pathlib import Path
 
+import click
 import pytest
 
 import epicyclic as ep
-from epicyclic.cli.main import main
+from epicyclic.cli.main import WRITTEN, cli, main
 from frozen.command import run_command
 
 PLANETARY_LOSSES = [
@@ -437,3 +438,18 @@ def test_a_wrong_distance_ends_a_duty_before_its_map(tmp_path):
     assert done.code == 2
     assert "distance = " in done.errors
     assert not (tmp_path / "m.nc").exists()
+
+
+def test_every_option_that_names_a_file_is_known_as_read_or_written():
+    """Else a new one could be written over a file that its command reads."""
+    context = click.Context(cli)
+    commands = [cli.get_command(context, name) for name in cli.list_commands(context)]
+    options = {
+        option.name
+        for command in commands
+        for option in command.params
+        if isinstance(option, click.Option)
+        and (isinstance(option.type, click.Path) or option.name == "json_file")
+    }
+    assert options - WRITTEN == {"points", "journal"}
+    assert len(options & WRITTEN) > 3

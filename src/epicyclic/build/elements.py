@@ -56,7 +56,13 @@ from epicyclic.oil.oil import Oil, oil_state
 
 _OF_PALMGREN = ("viscous_factor", "palmgren_coefficient", "flange_coefficient")
 _OF_SKF = ("seal", "oil_level", "drag_variable", "sliding_friction", "lubrication")
-"""Keys that bearings of other models do not use."""
+_UNUSED = {
+    "palmgren": _OF_SKF,
+    "harris": (*_OF_SKF, "palmgren_coefficient"),
+    "houpert": (*_OF_PALMGREN, "sliding_friction"),
+    "zhou-hoeprich": (*_OF_PALMGREN, "sliding_friction"),
+}
+"""Keys that a model does not use; other models do not use those of Palmgren's."""
 _FORTY_CELSIUS = 313.15  # 40 degC in kelvin.
 
 
@@ -67,9 +73,7 @@ def _bearing(
     if table.radial_force is not None or table.axial_force is not None:
         force = BearingLoad(radial=table.radial_force or 0.0, axial=table.axial_force or 0.0)
     model = _bearing_model(table, oil, folder)
-    idle = {*(_OF_SKF if model.name in ("palmgren", "harris") else _OF_PALMGREN)}
-    idle |= {"palmgren_coefficient"} if model.name == "harris" else set()
-    idle |= {"sliding_friction"} if model.name in ("houpert", "zhou-hoeprich") else set()
+    idle = {*_UNUSED.get(model.name, _OF_PALMGREN)}
     idle |= {"flange_coefficient"} if table.type != "cylindrical" else set()
     idle |= {"drag_variable"} if not table.oil_level else set()
     usual = ShaftBearingTable(shaft="any", type="needle", bore="1 mm", outside_diameter="2 mm")

@@ -26,7 +26,7 @@ from epicyclic.dataclass import dataclass, field, replace
 from epicyclic.errors import ConvergenceError
 from epicyclic.gears.gear import CARRIER, HOUSING
 from epicyclic.losses.pocket_tables import FlowTables
-from epicyclic.losses.ranges import Flags, ValidityFlag, floats
+from epicyclic.losses.ranges import Flags, ValidityFlag, takes_no_axial_force
 from epicyclic.machine.convection import (
     GRAVITY_TEMPERATURE,
     WATER,
@@ -358,7 +358,7 @@ def _support(tables: Tables, name: str) -> Support:
     table = tables[name]
     bearing, place = catalogue_bearing(table), table.position or 0.0
     others = [other for key, other in tables.items() if key != name]
-    free = [floats(one.type, one.designation) for one in (table, *others)]
+    free = [takes_no_axial_force(one.type, one.designation) for one in (table, *others)]
     sense, outer = table.axial_sense if table.locating or free == [False, True] else "none", 0.0
     if bearing.thrust_ratio and table.axial_sense != "both":
         sense = table.axial_sense
@@ -393,7 +393,7 @@ def _remarks(case: TrainCase) -> Iterator[tuple[str, tuple[str, tuple[str, ...]]
         ):
             assumed = "the bearing arrangement is not given; X is assumed, as is usual for gear "
             assumed += 'shafts. Write arrangement = "X" or "O".'
-        free = [floats(one.type, one.designation) for one in tables.values()]
+        free = [takes_no_axial_force(one.type, one.designation) for one in tables.values()]
         if len(tables) == 2 and not angular and senses[1:] == senses[:1] and free[0] == free[1]:
             who = "both bearings are" if senses else "no bearing is"
             advice = "Use one that can." if free[0] else "Write locating = true for one of them."

@@ -14,7 +14,7 @@ import numpy as np
 from epicyclic.build.machine import IN_BATH, Built
 from epicyclic.build.models import ONLY_WITH, SetCase, oil_share, standing_of, with_lubrication
 from epicyclic.case.case import Case, TrainCase
-from epicyclic.case.tables.models import LoadSharing
+from epicyclic.case.tables.models import ContactSolver, LoadSharing
 from epicyclic.case.tables.operation import SHARE_KEY, HousingTable, ThermalTable
 from epicyclic.case.tables.uncertainty import stated_values
 from epicyclic.contact.fitted_models import changed_properties
@@ -157,10 +157,12 @@ def _notes_of_tables(case: SetCase) -> tuple[tuple[str, ...], tuple[str, ...]]:
         if changed and not any(word in name for word in words for name in chosen):
             behind.append(f"models.{key} has no effect with models.{roles[0]} = {chosen[0]}.")
     friction = case.chosen["friction"]
-    beside = ["friction_table"] if case.friction_table and friction != "table" else []
-    beside += ["contact_solver"] if case.contact_solver != type(case.contact_solver)() else []
-    if beside and friction != "ehl-direct":
-        behind.append(f"[{beside[0]}] has no effect with models.friction = {friction}.")
+    for name, model, stated in (
+        ("friction_table", "table", case.friction_table is not None),
+        ("contact_solver", "ehl-direct", case.contact_solver != ContactSolver()),
+    ):
+        if stated and friction != model:
+            behind.append(f"[{name}] has no effect with models.friction = {friction}.")
     return tuple(before), tuple(map(Note, behind))
 
 
@@ -580,9 +582,9 @@ def _idle_heat(case: Case) -> Iterator[str]:
     for key in sorted(key for key in idle if getattr(table, key) != getattr(usual, key)):
         yield f"thermal.{key} has no effect {idle[key]}."
     if housing is not None:
-        usual_one = HousingTable(area="1 m^2", method=housing.method)
+        usual_housing = HousingTable(area="1 m^2", method=housing.method)
         for key in sorted(_OF_HOUSING[housing.method != "iso-14179-1"]):
-            if getattr(housing, key) != getattr(usual_one, key):
+            if getattr(housing, key) != getattr(usual_housing, key):
                 yield f"thermal.housing.{key} has no effect with method = {housing.method}."
 
 

@@ -45,7 +45,7 @@ UNDER: Mapping[tuple[str, ...], str] = {
 """Commands that stand under another one, by both words, and their former names."""
 
 
-_WRITTEN = {"output", "plot", "json_file", "save", "map_file", "rotor", "animate"}
+WRITTEN = {"output", "plot", "json_file", "save", "map_file", "rotor", "animate"}
 """Arguments of commands that name files to write."""
 
 
@@ -57,12 +57,12 @@ def _check_files(context: click.Context) -> None:
     }
     places: dict[str, str] = {}
     wrong = []
-    for name in sorted(context.params, key=_WRITTEN.__contains__):  # first what is read
+    for name in sorted(context.params, key=WRITTEN.__contains__):  # first what is read
         value = context.params[name]
         for one in value if isinstance(value, tuple) else (value,):
             if not isinstance(one, str | Path) or str(one) == "-":
                 continue
-            if name not in _WRITTEN and not os.path.isfile(one):  # noqa: PTH113 - any text
+            if name not in WRITTEN and not os.path.isfile(one):  # noqa: PTH113 - texts may be too long
                 continue
             other = places.setdefault(os.path.realpath(one), name)
             if other != name:

@@ -27,7 +27,7 @@ BearingType = Literal[
 Cage = Literal["caged", "full-complement"]
 
 
-def floats(kind: str, designation: str | None) -> bool:
+def takes_no_axial_force(kind: str, designation: str | None) -> bool:
     """True of bearings that carry no axial force: needles, and those with ribs on one ring only."""
     name = (designation or "").upper()  # NU 208, N 208, NN 3010; not NJ, NUP, NCF
     return kind == "needle" or (name[:1] == "N" and name.lstrip("NU .-")[:1].isdigit())

@@ -23,7 +23,7 @@ from epicyclic.case.tables.base import (
 )
 from epicyclic.errors import InputError, Problem, one_problem, raise_any
 from epicyclic.gears.gear import HOUSING
-from epicyclic.losses.ranges import BearingType, Cage, floats
+from epicyclic.losses.ranges import BearingType, Cage, takes_no_axial_force
 from epicyclic.messages import did_you_mean, millimetres, written
 from epicyclic.schema.fields import PointsTable, Table, ValuesOrRows, option
 from epicyclic.units import Length, Number, Play, Quantity, SmallLength, Temperature, VolumeFlow
@@ -534,7 +534,7 @@ def _force_problems(table: ShaftBearingTable) -> Iterator[Problem]:
         remedy = 'Add radial_force = "0 N" if there is none.'
         yield Problem("radial_force", "", "is missing, but axial_force is given.", remedy)
     for key, shown in {"locating": "true", "axial_force": f"{table.axial_force or 0:g} N"}.items():
-        if getattr(table, key) and floats(table.type, table.designation):
+        if getattr(table, key) and takes_no_axial_force(table.type, table.designation):
             kind = table.designation or "a needle roller bearing"
             reason = f"is not possible with {kind}, which carries no axial force."
             yield Problem(key, shown, reason, "Locate the shaft by another bearing.")
