@@ -37,7 +37,7 @@ LEAST_ROOT = 2.0  # Y_F Y_S of any tooth, about. [1]
 LEAST_HELIX = 0.75  # Y_beta. [1]
 TIP_ROOM = 0.35  # Roll length between base circle of a planet and tip of its ring. [modules]
 PIN, ROLLER = 0.8, 0.2  # Diameters of pin and rollers of planets over their root radius. [1]
-BORE = PIN / 2 + ROLLER  # Radius of the bore over that, the same. [1]
+BORE = PIN / 2 + ROLLER  # Radius of their bore over the same. [1]
 COARSE = {"mesh_positions": 12, "contact_segments": 12, "bearing_slices": 10}
 """Numerics of designs, unless the task states others."""
 STEEL, DENSITY = 206e9 / (1 - 0.3**2), 7850.0  # [Pa], [kg/m^3]
